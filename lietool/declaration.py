@@ -1,0 +1,232 @@
+"""What a figure file declares: its plates, its time, and by its signature its parameters.
+
+Everything is checked when the file is loaded, so that a mistake is found before a picture is drawn.
+"""
+
+import inspect
+import re
+import typing
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from lietool import parameter as _parameter
+from lietool.parameter import Parameter, nearest
+
+# The options that every figure command has; no parameter may be called so.
+RESERVED = ("output", "size", "draft", "json", "plate", "backend", "help")
+
+
+class FigureError(ValueError):
+    """A figure file that cannot be used; the message names the file and says what to do."""
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How far a picture and its numbers may be from their golden; other than the default needs `because`."""
+
+    pixels: int = 8
+    delta_e: float = 2.0
+    lowpass: float = 1.5
+    relative: float = 1e-9
+    because: str = ""
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A named set of parameters of a figure: a picture of the book."""
+
+    title: str
+    equations: tuple[str, ...]
+    caption: str
+    params: Mapping[str, object] = field(default_factory=dict)
+    tolerance: Tolerance = Tolerance()
+
+
+@dataclass(frozen=True)
+class Time:
+    """The parameter that an animation sweeps: back and forth, or round and round where it is `closed`."""
+
+    param: str
+    start: float
+    stop: float
+    frames: int = 48
+    seconds: float = 4.0
+    closed: bool = False
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What a figure returns: a `lietool.render.scene.Picture`, and the numbers that it shows."""
+
+    picture: Any
+    numbers: Mapping[str, object]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure, read from its file."""
+
+    name: str
+    function: Callable[..., Drawing]
+    parameters: tuple[Parameter, ...]
+    plates: Mapping[str, Plate]
+    time: Time | None
+    file: Path
+    chapter: str
+    summary: str
+    help: str
+
+    def draw(self, **params: object) -> Drawing:
+        """Draw the figure; parameters that are not given have their defaults.
+
+        Raises
+        ------
+        ValueError
+            If a parameter is unknown, of another type, not finite or out of range.
+        FigureError
+            If the function returns anything but a `Drawing`.
+        """
+        drawing = self.function(**self.check(params))
+        if not isinstance(drawing, Drawing):
+            raise FigureError(f"{self.file}: {self.name} must return a Drawing; got {type(drawing).__name__}")
+        return drawing
+
+    def check(self, params: Mapping[str, object]) -> dict[str, Any]:
+        """Return all parameters: those given, in their own types, and the defaults of the others.
+
+        Raises
+        ------
+        ValueError
+            If one is unknown or not as the signature says.
+        """
+        values = {parameter.name: parameter.default for parameter in self.parameters}
+        known = {parameter.name: parameter for parameter in self.parameters}
+        for name, value in params.items():
+            if name not in known:
+                raise ValueError(f"{self.name}.draw: no parameter {name!r}.{nearest(name, known)}")
+            try:
+                values[name] = known[name].check(value)
+            except ValueError as error:
+                raise ValueError(
+                    f"{self.name}.draw: {name} {error}. Write for example {name}={values[name]!r}"
+                ) from None
+        return values
+
+    def plate_params(self, plate_id: str) -> dict[str, Any]:
+        """Return the parameters of a plate: the defaults, and over them its own.
+
+        Raises
+        ------
+        ValueError
+            If the figure has no such plate.
+        """
+        if plate_id not in self.plates:
+            hint = nearest(plate_id, self.plates)
+            raise ValueError(f"{self.name}.plate_params: no plate {plate_id!r}.{hint}")
+        return self.check(self.plates[plate_id].params)
+
+
+def figure(
+    *, plates: Mapping[str, Plate], time: Time | None = None
+) -> Callable[[Callable[..., Drawing]], Figure]:
+    """Make a figure of the function below: its signature lists the parameters, its docstring is the help.
+
+    Raises
+    ------
+    FigureError
+        If anything that a figure needs is missing or contradicts the rest.
+    """
+
+    def decorate(function: Callable[..., Drawing]) -> Figure:
+        file = Path(function.__code__.co_filename)
+        try:
+            return _checked(function, dict(plates), time, file)
+        except ValueError as error:
+            raise FigureError(f"{file}: {error}") from None
+
+    return decorate
+
+
+def _checked(
+    function: Callable[..., Drawing], plates: dict[str, Plate], time: Time | None, file: Path
+) -> Figure:
+    if function.__name__ != file.stem:
+        raise ValueError(
+            f"the function {function.__name__} and its file have different names. Rename one of them"
+        )
+    help_text = inspect.getdoc(function) or ""
+    summary = help_text.partition("\n")[0].strip()
+    if not summary:
+        raise ValueError(
+            f"{function.__name__} has no docstring. Its first line is shown by lietool --help; write one"
+        )
+    chapter = "" if file.parent.name == "figures" else file.parent.name
+    name = function.__name__.replace("_", "-")
+    read = tuple(_read_signature(function))
+    checked = Figure(name, function, read, plates, time, file, chapter, summary, help_text)
+    _check_plates(checked)
+    if time:
+        _check_time(time, read)
+    return checked
+
+
+def _read_signature(function: Callable[..., Drawing]) -> Iterable[Parameter]:
+    hints = typing.get_type_hints(function, include_extras=True)
+    for name, argument in inspect.signature(function).parameters.items():
+        if name in RESERVED:
+            raise ValueError(f"parameter {name} has the name of an option that every figure has. Rename it")
+        if argument.default is inspect.Parameter.empty:
+            raise ValueError(f"parameter {name} has no default. Bare lietool {function.__name__} needs one")
+        try:
+            yield _parameter.read(name, hints.get(name), argument.default)
+        except ValueError as error:
+            raise ValueError(f"parameter {name} {error}") from None
+
+
+def _check_plates(figure: Figure) -> None:
+    if not figure.plates:
+        raise ValueError(
+            'no plates. Write @figure(plates={"ID": Plate(title=..., equations=(), caption=...)})'
+        )
+    first = next(iter(figure.plates))
+    for plate_id, plate in figure.plates.items():
+        # The id is a file name and a word on the command line.
+        if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9.-]*", plate_id):
+            raise ValueError(f"plate {plate_id!r} must be named by letters, digits, '.' and '-'. Rename it")
+        if not plate.title.strip() or not plate.caption.strip():
+            raise ValueError(f"plate {plate_id} has no title or no caption. Write both")
+        if isinstance(plate.equations, str):
+            raise ValueError(f'plate {plate_id}: equations must be a tuple. Write ("{plate.equations}",)')
+        if plate_id == first and plate.params:
+            raise ValueError(
+                f"plate {plate_id} is the first, which stands for the defaults, but has params. "
+                "Make them the defaults of the function"
+            )
+        tolerance = plate.tolerance
+        if tolerance != Tolerance(because=tolerance.because) and not tolerance.because.strip():
+            raise ValueError(
+                f"plate {plate_id} has a tolerance of its own. Say why: Tolerance(..., because='...')"
+            )
+        try:
+            figure.plate_params(plate_id)
+        except ValueError as error:
+            raise ValueError(f"plate {plate_id}: {error}") from None
+
+
+def _check_time(time: Time, parameters: Sequence[Parameter]) -> None:
+    known = {parameter.name: parameter for parameter in parameters if parameter.kind == "float"}
+    if time.param not in known:
+        raise ValueError(
+            f"time is {time.param!r}, which must be a float parameter. Name one of {', '.join(known)}"
+        )
+    for end in (time.start, time.stop):
+        try:
+            known[time.param].check(end)
+        except ValueError as error:
+            raise ValueError(
+                f"time goes outside of its parameter: {time.param} {error}. Shorten it"
+            ) from None
+    if time.frames < 2 or not time.seconds > 0:
+        raise ValueError("time must have at least 2 frames and take more than 0 seconds. Correct it")
