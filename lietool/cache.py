@@ -23,16 +23,20 @@ def wanted() -> Path:
     if own := os.environ.get("LIETOOL_CACHE_DIR"):
         return Path(own).absolute()
     # The XDG specification says that a relative path is to be ignored.
-    if os.path.isabs(xdg := os.environ.get("XDG_CACHE_HOME", "")):
-        return Path(xdg) / "lietool"
-    home = os.path.expanduser("~")
-    if not os.path.isabs(home):
+    xdg = Path(os.environ.get("XDG_CACHE_HOME", ""))
+    if xdg.is_absolute():
+        return xdg / "lietool"
+    try:
+        home = Path.home()
+    except RuntimeError:
+        return _temporary()
+    if not home.is_absolute():
         return _temporary()
     if sys.platform == "darwin":
-        return Path(home, "Library", "Caches", "lietool")
+        return home / "Library" / "Caches" / "lietool"
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA") or home, "lietool", "cache")
-    return Path(home, ".cache", "lietool")
+    return home / ".cache" / "lietool"
 
 
 def folder(name: str = "") -> Path | None:
