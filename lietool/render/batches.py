@@ -1,0 +1,216 @@
+"""Records turned into arrays for the graphics library: triangles, segments, balls, each with its depth."""
+
+from dataclasses import dataclass
+from functools import singledispatch
+
+import numpy as np
+
+from lietool.render import solids, style
+from lietool.render.camera import Box, Camera, Page, project
+from lietool.render.scene import Arrow, Frame, Label, Lines, Points, Record, Surface, Tube
+
+MATERIALS = {"flat": 0.0, "matte": 1.0, "glass": 2.0}
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Elements of one kind, each a row.
+
+    Parameters
+    ----------
+    kind : {"surface", "glass", "lines", "points"}
+    data : ndarray of float32, shape (n, ...)
+        What the shader reads for each triangle (three vertices), segment or ball.
+    depth : ndarray, shape (n,)
+        By which translucent elements are sorted, farthest first.
+    opaque : bool
+        Nothing behind it shows, so that it may be drawn first and fill the depth buffer.
+    """
+
+    kind: str
+    data: np.ndarray
+    depth: np.ndarray
+    opaque: bool = False
+
+
+@dataclass(frozen=True)
+class Lens:
+    """What a record needs to know to become a batch: camera, box on the page, pixels per page unit."""
+
+    camera: Camera | Page
+    box: Box
+    unit: float
+
+    @property
+    def world(self) -> float:
+        """World units per page unit at the target."""
+        return self.camera.height / self.box[3] if isinstance(self.camera, Camera) else 1.0
+
+    def depth(self, points: np.ndarray) -> np.ndarray:
+        """Return the distance along the axis of view of points (..., 3)."""
+        return project(self.camera, self.box, points)[..., 2]
+
+
+def rgba(color: str | np.ndarray, n: int, alpha: float = 1.0) -> np.ndarray:
+    """Return linear RGBA for `n` points; shape (n, 4)."""
+    rows = style.linear(color) if isinstance(color, str) else np.asarray(color, float)
+    rows = np.broadcast_to(rows, (n, 4)).copy()
+    rows[:, 3] *= alpha
+    return rows
+
+
+@singledispatch
+def batches(record: Record, lens: Lens) -> list[Batch]:
+    """Return the batches that draw a record.
+
+    Parameters
+    ----------
+    record : Record
+        Of `scene`; a label has none, it is composed afterwards.
+    lens : Lens
+
+    Raises
+    ------
+    ValueError
+        If a coordinate is NaN or infinite where it may not be.
+    """
+    raise TypeError(f"batches: record must be one of scene.Record; got {type(record).__name__}")
+
+
+@batches.register
+def _(record: Label, lens: Lens) -> list[Batch]:
+    return []
+
+
+@batches.register
+def _(record: Surface, lens: Lens) -> list[Batch]:
+    vertices = _finite(record.vertices, "Surface.vertices")
+    faces = np.asarray(record.faces, int).reshape(-1, 3)
+    if not len(faces):
+        return []
+    corners = vertices[faces]
+    if record.normals is None:
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        length = np.linalg.norm(normals, axis=-1, keepdims=True)
+        normals = np.repeat((normals / np.where(length > 0, length, 1.0))[:, None], 3, axis=1)
+    else:
+        normals = np.asarray(record.normals, float)[faces]
+    color = rgba(record.color, len(vertices), record.alpha)[faces]
+    material = np.full((*faces.shape, 1), MATERIALS[record.material])
+    data = np.concatenate([corners, normals, color, material], axis=-1).astype("f4")
+    depth = lens.depth(corners.mean(axis=1))
+    if record.material == "glass":
+        # The far wall comes before everything and the near wall at the middle: what lies nearer is in front.
+        return [
+            Batch("glass far", data, np.full(len(data), lens.depth(vertices).max())),
+            Batch("glass near", data, np.full(len(data), depth.mean())),
+        ]
+    return [Batch("surface", data, depth, bool(color[..., 3].min() >= 1.0))]
+
+
+@batches.register
+def _(record: Lines, lens: Lens) -> list[Batch]:
+    points = np.asarray(record.points, float).reshape(-1, 3)
+    color = rgba(record.color, len(points), record.alpha)
+    half_width = record.width * lens.unit / 2.0
+    # A hairline thinner than a pixel would vanish between two of them; it is drawn paler instead.
+    if half_width < 0.35:
+        color[:, 3] *= half_width / 0.35
+        half_width = 0.35
+    if record.dash:
+        points, color = _dashed(points, color, record.dash, lens)
+    lift = record.lift * lens.camera.height
+    rows = [_segments(points[s], color[s], half_width, lift) for s in _runs(points)]
+    rows = [r for r in rows if len(r)]
+    if not rows:
+        return []
+    data = np.concatenate(rows)
+    return [Batch("lines", data.astype("f4"), lens.depth((data[:, 3:6] + data[:, 6:9]) / 2.0) - lift)]
+
+
+@batches.register
+def _(record: Points, lens: Lens) -> list[Batch]:
+    positions = _finite(record.positions, "Points.positions").reshape(-1, 3)
+    n = len(positions)
+    rim = rgba(record.rim, n) if record.rim else np.zeros((n, 4))
+    lift = 1.5 * record.radius * lens.world
+    rest = np.tile([record.radius * lens.unit, float(record.shaded), lift], (n, 1))
+    data = np.concatenate([positions, rgba(record.color, n), rim, rest], axis=-1)
+    return [Batch("points", data.astype("f4"), lens.depth(positions) - lift)] if n else []
+
+
+@batches.register
+def _(record: Arrow, lens: Lens) -> list[Batch]:
+    start, end = _finite(record.start, "Arrow.start"), _finite(record.end, "Arrow.end")
+    vertices, faces, normals = solids.arrow(start, end, record.radius, record.head)
+    material = "flat" if isinstance(lens.camera, Page) else "matte"
+    return batches(Surface(vertices, faces, record.color, normals, material, record.alpha), lens)
+
+
+@batches.register
+def _(record: Tube, lens: Lens) -> list[Batch]:
+    points = _finite(record.points, "Tube.points")
+    vertices, faces, normals = solids.tube(points, record.radius, record.closed)
+    color = record.color
+    if not isinstance(color, str):
+        # Every ring of the tube takes the colour of the nearest point of its axis.
+        near = np.argmin(np.linalg.norm(vertices[:, None] - points[None], axis=-1), axis=1)
+        color = np.asarray(color)[near]
+    return batches(Surface(vertices, faces, color, normals), lens)
+
+
+@batches.register
+def _(record: Frame, lens: Lens) -> list[Batch]:
+    origin, matrix = _finite(record.origin, "Frame.origin"), _finite(record.matrix, "Frame.matrix")
+    found: list[Batch] = []
+    for axis, color in zip(matrix.T, style.AXES, strict=True):
+        found += batches(Arrow(origin, origin + record.length * axis, color, record.radius), lens)
+    return found
+
+
+def _finite(values: object, name: str) -> np.ndarray:
+    array = np.asarray(values, float)
+    if not np.isfinite(array).all():
+        where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise ValueError(f"render: {name} must be finite; got {array[where]} at index {where}")
+    return array
+
+
+def _runs(points: np.ndarray) -> list[slice]:
+    broken = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    starts = np.concatenate([[0], broken + 1])
+    ends = np.concatenate([broken, [len(points)]])
+    return [slice(a, b) for a, b in zip(starts, ends, strict=True) if b - a >= 2]
+
+
+def _segments(points: np.ndarray, color: np.ndarray, half_width: float, lift: float) -> np.ndarray:
+    closed = len(points) > 2 and np.array_equal(points[0], points[-1])
+    before = np.concatenate([points[-2:-1] if closed else points[:1], points[:-2]])
+    after = np.concatenate([points[2:], points[1:2] if closed else points[-1:]])
+    rest = np.tile([half_width, lift], (len(points) - 1, 1))
+    return np.concatenate([before, points[:-1], points[1:], after, color[:-1], color[1:], rest], axis=-1)
+
+
+def _dashed(
+    points: np.ndarray, color: np.ndarray, dash: tuple[float, float], lens: Lens
+) -> tuple[np.ndarray, np.ndarray]:
+    stroke, gap = dash
+    out_points, out_color = [], []
+    for s in _runs(points):
+        page = project(lens.camera, lens.box, points[s])[:, :2]
+        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(page, axis=0), axis=-1))])
+        if length[-1] == 0.0:
+            continue
+        # Whole strokes: both ends of the line end in ink.
+        count = max(round((length[-1] + gap) / (stroke + gap)), 1)
+        scale = length[-1] / (count * (stroke + gap) - gap)
+        for i in range(count):
+            first = i * (stroke + gap) * scale
+            last = first + stroke * scale
+            inside = length[(length > first) & (length < last)]
+            at = np.concatenate([[first], inside, [last], [np.nan]])
+            for source, out in ((points[s], out_points), (color[s], out_color)):
+                out.append(np.stack([np.interp(at, length, column) for column in source.T], axis=-1))
+    if not out_points:
+        return points[:0], color[:0]
+    return np.concatenate(out_points), np.concatenate(out_color)

@@ -1,0 +1,122 @@
+"""Labels laid over the rendered pixels."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from lietool.render import labels
+from lietool.render.camera import Box, project
+from lietool.render.scene import Label, Picture
+
+# The halo, in page units: how far it reaches at full strength, how far it fades, how strong it is.
+_HALO_REACH, _HALO_FADE, _HALO_STRENGTH = 2.2, 2.4, 0.86
+
+
+@dataclass(frozen=True)
+class PlacedLabel:
+    """Where a label came to lie.
+
+    Parameters
+    ----------
+    text : str
+    key : str
+        Its name in the label store.
+    box : tuple of int
+        Left, top, right, lower edge in pixels, y down; the ink lies inside.
+    """
+
+    text: str
+    key: str
+    box: tuple[int, int, int, int]
+
+
+def compose(
+    image: np.ndarray, picture: Picture, unit: float, corner: tuple[float, float], store: labels.Store
+) -> tuple[PlacedLabel, ...]:
+    """Draw every label of a picture into its pixels, each on whole pixels.
+
+    Parameters
+    ----------
+    image : ndarray of uint8, shape (h, w, 3)
+        Changed in place.
+    picture : Picture
+    unit : float
+        Pixels per page unit.
+    corner : tuple of float
+        Where the page's lower left corner lies, in pixels from the lower left of the image.
+    store : Store
+        Where the rasterised labels come from.
+
+    Returns
+    -------
+    tuple of PlacedLabel
+    """
+    placed = []
+    page: Box = (0.0, 0.0, *map(float, picture.size))
+    for view in picture.views:
+        for record in view.records:
+            if not isinstance(record, Label):
+                continue
+            point = project(view.camera, view.box or page, record.position)[:2]
+            glyphs = store.get(record.text, record.size * unit)
+            x, y = (point + record.offset) * unit + corner
+            left, top = _anchored(record.anchor, x, image.shape[0] - y, glyphs)
+            _lay(image, record, glyphs, (left, top), unit, picture.paper)
+            placed.append(PlacedLabel(record.text, glyphs.key, _ink_box(glyphs, left, top)))
+    return tuple(placed)
+
+
+def _anchored(anchor: str, x: float, y: float, glyphs: labels.Glyphs) -> tuple[int, int]:
+    height, width = glyphs.coverage.shape
+    right = {"l": 0.0, "c": width / 2.0, "r": float(width)}
+    down = {"t": 0.0, "c": height / 2.0, "b": float(height), "n": float(height - glyphs.baseline)}
+    if len(anchor) != 2 or anchor[0] not in right or anchor[1] not in down:
+        raise ValueError(f"Label.anchor must be one of l c r and one of t c b n, such as 'cb'; got {anchor!r}")
+    return round(x - right[anchor[0]]), round(y - down[anchor[1]])
+
+
+def _ink_box(glyphs: labels.Glyphs, left: int, top: int) -> tuple[int, int, int, int]:
+    rows = np.flatnonzero(glyphs.coverage.any(axis=1))
+    columns = np.flatnonzero(glyphs.coverage.any(axis=0))
+    if not len(rows):
+        return left, top, left, top
+    return left + int(columns[0]), top + int(rows[0]), left + int(columns[-1]) + 1, top + int(rows[-1]) + 1
+
+
+def _lay(
+    image: np.ndarray, record: Label, glyphs: labels.Glyphs, at: tuple[int, int], unit: float, paper: str
+) -> None:
+    if record.halo:
+        reach, fade = max(round(_HALO_REACH * unit), 1), max(round(_HALO_FADE * unit), 1)
+        soft = _halo(glyphs.coverage.tobytes(), glyphs.coverage.shape, reach, fade)
+        margin = (soft.shape[0] - glyphs.coverage.shape[0]) // 2
+        _blend(image, _srgb(paper), soft * _HALO_STRENGTH, at[0] - margin, at[1] - margin)
+    _blend(image, _srgb(record.color), glyphs.coverage / 255.0, *at)
+
+
+def _srgb(color: str) -> np.ndarray:
+    return np.array([int(color[i : i + 2], 16) for i in (1, 3, 5)], float)
+
+
+def _blend(image: np.ndarray, color: np.ndarray, coverage: np.ndarray, left: int, top: int) -> None:
+    height, width = image.shape[:2]
+    y0, y1 = max(top, 0), min(top + coverage.shape[0], height)
+    x0, x1 = max(left, 0), min(left + coverage.shape[1], width)
+    if y0 >= y1 or x0 >= x1:
+        return
+    part = image[y0:y1, x0:x1]
+    alpha = coverage[y0 - top : y1 - top, x0 - left : x1 - left, None]
+    # Text is blended as encoded, not in linear light: dark type on white keeps its weight.
+    part[...] = np.rint(part * (1.0 - alpha) + color * alpha).astype(np.uint8)
+
+
+@lru_cache(maxsize=256)
+def _halo(coverage: bytes, shape: tuple[int, int], reach: int, fade: int) -> np.ndarray:
+    margin = reach + fade
+    ink = np.pad(np.frombuffer(coverage, np.uint8).reshape(shape) / 255.0, margin)
+    for axis in (0, 1):
+        ink = np.max([np.roll(ink, s, axis) for s in range(-reach, reach + 1)], axis=0)
+    for axis in (0, 1, 0, 1):
+        ink = np.mean([np.roll(ink, s, axis) for s in range(-(fade // 2), fade // 2 + 1)], axis=0)
+    return ink

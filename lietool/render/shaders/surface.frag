@@ -1,0 +1,40 @@
+#version 330 core
+// 0 flat, 1 matte, 2 glass, as in draw.MATERIALS.
+uniform float side;  // of a shell of glass: -1 the far wall, 1 the near wall
+uniform bool lens;   // false on a page, where every line of sight is along z
+in vec3 v_position;
+in vec3 v_normal;
+in vec4 v_color;
+flat in float v_material;
+out vec4 color;
+
+const vec3 KEY = normalize(vec3(-0.45, 0.75, 0.62));
+const vec3 FILL = normalize(vec3(0.8, -0.25, 0.45));
+
+void main() {
+    if (v_material < 0.5) {
+        color = vec4(v_color.rgb * v_color.a, v_color.a);
+        return;
+    }
+    vec3 eye = lens ? normalize(-v_position) : vec3(0.0, 0.0, 1.0);
+    vec3 normal = normalize(v_normal);
+    float facing = dot(normal, eye);
+    bool glass = v_material > 1.5;
+    if (glass && facing * side < 0.0) discard;
+    if (facing < 0.0) normal = -normal;
+    facing = abs(facing);
+    float specular = pow(max(dot(normal, normalize(KEY + eye)), 0.0), 48.0);
+    if (glass) {
+        float rim = pow(1.0 - facing, 2.2);
+        float alpha = v_color.a * mix(0.16, 0.74, rim) * (side < 0.0 ? 0.62 : 1.0);
+        vec3 tint = mix(v_color.rgb * 1.08, v_color.rgb * 0.80, rim);
+        float spark = side > 0.0 ? 0.20 * specular : 0.0;
+        color = vec4(tint * alpha + spark, alpha + spark * 0.5);
+        return;
+    }
+    float ambient = mix(0.30, 0.55, normal.y * 0.5 + 0.5);
+    float key = 0.66 * max(dot(normal, KEY), 0.0);
+    vec3 fill = vec3(0.06, 0.075, 0.10) * max(dot(normal, FILL), 0.0);
+    vec3 lit = v_color.rgb * (ambient + key + fill) + 0.16 * specular;
+    color = vec4(lit * v_color.a, v_color.a);
+}

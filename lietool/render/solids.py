@@ -1,0 +1,160 @@
+"""Shapes that records are made of: tubes, arrows, balls, rings, as triangles with smooth normals.
+
+These are for looking at: vertices are doubled along sharp edges.  Meshes to compute with are in
+`lietool.mesh.shapes`.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+Triangles = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def frame_along(direction: ArrayLike) -> np.ndarray:
+    """Return a right-handed frame whose third column is along `direction`; shape (3, 3)."""
+    w = np.asarray(direction, float)
+    w = w / np.linalg.norm(w)
+    # The axis least along w keeps the cross product long.
+    u = np.cross(np.eye(3)[np.argmin(np.abs(w))], w)
+    u /= np.linalg.norm(u)
+    return np.stack([u, np.cross(w, u), w], axis=-1)
+
+
+def _grid_faces(rows: int, columns: int) -> np.ndarray:
+    a = np.arange(rows * columns).reshape(rows, columns)
+    quads = np.stack([a[:-1, :-1], a[:-1, 1:], a[1:, 1:], a[1:, :-1]], axis=-1).reshape(-1, 4)
+    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+
+def revolve(profile: ArrayLike, segments: int = 40) -> Triangles:
+    """Turn a profile about the z axis, with a sharp edge at each of its corners.
+
+    Parameters
+    ----------
+    profile : array_like, shape (k, 2)
+        Radius and height; the outside lies to the right when walking along it.
+    segments : int
+        Around the axis.
+
+    Returns
+    -------
+    vertices, faces, normals : ndarray
+    """
+    profile = np.asarray(profile, float)
+    angle = np.linspace(0.0, 2.0 * np.pi, segments + 1)
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    vertices, normals, faces = [], [], []
+    for first, last in zip(profile[:-1], profile[1:], strict=True):
+        along = last - first
+        length = np.linalg.norm(along)
+        if length == 0.0:
+            continue
+        out, up = along[1] / length, -along[0] / length
+        for radius, z in (first, last):
+            vertices.append(np.column_stack([radius * circle, np.full(segments + 1, z)]))
+            normals.append(np.column_stack([out * circle, np.full(segments + 1, up)]))
+        start = 2 * (segments + 1) * len(faces)
+        faces.append(_grid_faces(2, segments + 1)[:, ::1] + start)
+    return np.concatenate(vertices), np.concatenate(faces), np.concatenate(normals)
+
+
+def arrow(start: ArrayLike, end: ArrayLike, radius: float, head: float = 2.6) -> Triangles:
+    """Return an arrow: a cylinder of `radius` and a cone `head` times as wide.
+
+    A short arrow keeps its proportions: the head is never longer than half of it.
+    """
+    start, end = np.asarray(start, float), np.asarray(end, float)
+    length = float(np.linalg.norm(end - start))
+    if length == 0.0:
+        return np.zeros((0, 3)), np.zeros((0, 3), int), np.zeros((0, 3))
+    cone = min(3.0 * head * radius, 0.5 * length)
+    wide = cone / 3.0
+    profile = [(0, 0), (radius, 0), (radius, length - cone), (wide, length - cone), (0, length)]
+    vertices, faces, normals = revolve(profile, 28)
+    axes = frame_along(end - start)
+    return vertices @ axes.T + start, faces, normals @ axes.T
+
+
+def sphere(radius: float = 1.0, center: ArrayLike = (0.0, 0.0, 0.0), rings: int = 48) -> Triangles:
+    """Return a ball with `rings` parallels and twice as many meridians."""
+    theta = np.linspace(0.0, np.pi, rings + 1)[:, None]
+    phi = np.linspace(0.0, 2.0 * np.pi, 2 * rings + 1)[None, :]
+    normals = np.stack(
+        [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta) + 0.0 * phi], axis=-1
+    ).reshape(-1, 3)
+    return radius * normals + center, _grid_faces(rings + 1, 2 * rings + 1), normals
+
+
+def transported_frames(points: np.ndarray, closed: bool) -> np.ndarray:
+    """Return frames along a polyline that turn about it as little as possible; shape (n, 3, 3)."""
+    steps = np.diff(points, axis=0)
+    steps /= np.linalg.norm(steps, axis=-1, keepdims=True)
+    before = np.concatenate([steps[-1:] if closed else steps[:1], steps])
+    after = np.concatenate([steps, steps[:1] if closed else steps[-1:]])
+    tangents = before + after
+    tangents /= np.linalg.norm(tangents, axis=-1, keepdims=True)
+    frames = [frame_along(tangents[0])]
+    for w in tangents[1:]:
+        u = frames[-1][:, 0] - (frames[-1][:, 0] @ w) * w
+        u /= np.linalg.norm(u)
+        frames.append(np.stack([u, np.cross(w, u), w], axis=-1))
+    return np.array(frames)
+
+
+def tube(points: ArrayLike, radius: float, closed: bool = False, segments: int = 16) -> Triangles:
+    """Return a round tube along a polyline, with half balls at its ends.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+        Consecutive points must differ; repeated ones are left out.
+    radius : float
+    closed : bool
+        Join the last point to the first; then no ends.
+    segments : int
+        Around the tube.
+    """
+    points = np.asarray(points, float)
+    keep = np.concatenate([[True], np.linalg.norm(np.diff(points, axis=0), axis=-1) > 1e-12])
+    points = points[keep]
+    if len(points) < 2:
+        return sphere(radius, points[0], 10)
+    if closed and np.linalg.norm(points[-1] - points[0]) > 1e-12:
+        points = np.concatenate([points, points[:1]])
+    frames = transported_frames(points, closed)
+    offset, lean, scale = np.zeros(len(points)), np.zeros(len(points)), np.ones(len(points))
+    if not closed:
+        cap = np.linspace(0.0, np.pi / 2, 7)[:-1]
+        frames = np.concatenate([frames[[0] * 6], frames, frames[[-1] * 6]])
+        points = np.concatenate([points[[0] * 6], points, points[[-1] * 6]])
+        zeros, ones = np.zeros(len(offset)), np.ones(len(offset))
+        lean = np.concatenate([-np.cos(cap), zeros, np.cos(cap[::-1])])
+        scale = np.concatenate([np.sin(cap), ones, np.sin(cap[::-1])])
+    angle = np.linspace(0.0, 2.0 * np.pi, segments + 1)
+    ring = np.cos(angle)[:, None] * frames[:, None, :, 0] + np.sin(angle)[:, None] * frames[:, None, :, 1]
+    normals = scale[:, None, None] * ring + (lean[:, None] * frames[:, :, 2])[:, None, :]
+    vertices = points[:, None, :] + radius * normals
+    # Walking along the tube after walking around it turns the faces inwards; the other order is outwards.
+    faces = _grid_faces(len(points), segments + 1)
+    return vertices.reshape(-1, 3), faces, normals.reshape(-1, 3)
+
+
+def band(inner: float, outer: float, thickness: float, bevel: float = 0.15) -> Triangles:
+    """Return a flat ring about the z axis with bevelled edges.
+
+    Parameters
+    ----------
+    inner, outer : float
+        Radii.
+    thickness : float
+        Along z, centred at 0.
+    bevel : float
+        Width of the slanted edge, as a fraction of the smaller side of the section.
+    """
+    h = thickness / 2.0
+    b = bevel * min(thickness, outer - inner)
+    profile = [
+        (inner, h - b), (inner, -h + b), (inner + b, -h), (outer - b, -h), (outer, -h + b),
+        (outer, h - b), (outer - b, h), (inner + b, h), (inner, h - b),
+    ]  # fmt: skip
+    return revolve(profile, 120)

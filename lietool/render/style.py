@@ -1,0 +1,86 @@
+"""Colours, widths and type sizes, named by what they mean; nothing else in the project knows a colour.
+
+Every colour is an sRGB hex string.  The three frame colours and the ramp keep
+apart for the common forms of colour blindness and differ in lightness, so that
+they keep apart in grey too.  Widths and sizes are in page units: the page of a
+picture is 1200 x 900 of them unless it says otherwise.
+"""
+
+import numpy as np
+
+PAPER = "#ffffff"
+INK = "#2b2f36"
+MUTED = "#6b7280"
+RULE = "#c9cdd4"
+BAND = "#eef2f7"
+
+ARC = "#e0860b"
+ARC_TEXT = "#94560a"
+ALGEBRA = "#2b66b1"
+ALGEBRA_TEXT = "#1f4d8a"
+GROUP = "#e0860b"
+WRONG = "#c8372d"
+RIGHT = "#2b66b1"
+
+AXIS_X = "#c8372d"
+AXIS_Y = "#2e8b57"
+AXIS_Z = "#2b66b1"
+AXES = (AXIS_X, AXIS_Y, AXIS_Z)
+
+GLASS = "#b4cdea"
+GLASS_EDGE = "#4a6a94"
+BONE = "#f3f1ea"
+SHELLS = ("#7aa6d8", "#f0b35a", "#6fb58f")
+SHELLS_TEXT = ("#2b5f9e", "#94560a", "#26704a")
+
+CURVE = 3.2
+HAIR = 1.05
+THIN = 1.6
+EDGE = 1.9
+GRATICULE_ALPHA = 0.42
+
+TEXT = 30.0
+SMALL_TEXT = 25.0
+TITLE_TEXT = 32.0
+
+
+def linear(color: str | tuple[float, ...], alpha: float = 1.0) -> np.ndarray:
+    """Return an sRGB hex colour as linear RGBA.
+
+    Parameters
+    ----------
+    color : str
+        ``#rrggbb``.
+    alpha : float
+        Opacity, 0 to 1.
+
+    Returns
+    -------
+    ndarray, shape (4,)
+        Linear red, green, blue and the opacity (not premultiplied).
+    """
+    if isinstance(color, str):
+        srgb = np.array([int(color[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
+    else:
+        srgb = np.asarray(color, float)[:3]
+    rgb = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    return np.append(rgb, alpha)
+
+
+def ramp(t: np.ndarray, colors: tuple[str, ...] = (AXIS_Z, "#f2e3c0", "#d96b2b")) -> np.ndarray:
+    """Return linear RGBA along a ramp of colours.
+
+    Parameters
+    ----------
+    t : ndarray, shape (n,)
+        Positions, 0 to 1.
+    colors : tuple of str
+        The stops, equally spaced; blue, cream, orange unless given.
+
+    Returns
+    -------
+    ndarray, shape (n, 4)
+    """
+    stops = np.array([linear(c) for c in colors])
+    where = np.linspace(0.0, 1.0, len(stops))
+    return np.stack([np.interp(t, where, stops[:, i]) for i in range(4)], axis=-1)
