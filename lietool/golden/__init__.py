@@ -1,0 +1,1 @@
+"""Goldens: the pictures and numbers that were looked at once and are compared ever since."""

@@ -1,0 +1,227 @@
+"""Two pictures: are they the same, as an eye and not as a file comparison would say.
+
+The rule has two halves, and each sees what the other is blind to.  The count
+of pixels beyond a colour distance catches anything small and strong: a moved
+edge, a missing dot, a changed letter.  The 9x9 mean of the *signed* difference
+catches anything wide and weak, a surface three levels too light, while the
+noise of antialiasing, which has no sign of its own, cancels in it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+PIXELS = 8
+DELTA_E = 2.0
+LOWPASS = 1.5
+BOX = 9
+
+# sRGB to linear light for every 8-bit level, and linear sRGB to XYZ over the D65 white.
+_LEVEL = np.arange(256) / 255.0
+_LINEAR = np.where(_LEVEL <= 0.04045, _LEVEL / 12.92, ((_LEVEL + 0.055) / 1.055) ** 2.4)
+_XYZ = np.array(
+    [[0.412453, 0.357580, 0.180423], [0.212671, 0.715160, 0.072169], [0.019334, 0.119193, 0.950227]]
+) / np.array([[0.95047], [1.0], [1.08883]])
+_LAB = np.array([[0.0, 116.0, 0.0], [500.0, -500.0, 0.0], [0.0, 200.0, -200.0]])
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What the comparison of two pictures found; lengths in pixels, positions (x, y) from the upper left.
+
+    `lowpass` is the 9x9 mean of actual minus expected that is largest in
+    magnitude, with its sign, and `channel` the channel where it was found.
+    Positions are None where nothing differs.
+    """
+
+    expected_size: tuple[int, int]
+    actual_size: tuple[int, int]
+    differing: int = 0
+    over: int = 0
+    largest_delta_e: float = 0.0
+    largest_delta_e_at: tuple[int, int] | None = None
+    lowpass: float = 0.0
+    lowpass_at: tuple[int, int] | None = None
+    lowpass_channel: str = ""
+    too_far: bool = False
+    too_wide: bool = False
+    pixels_limit: int = PIXELS
+    delta_e_limit: float = DELTA_E
+    lowpass_limit: float = LOWPASS
+
+    @property
+    def same_size(self) -> bool:
+        """Whether the two can be compared at all."""
+        return self.expected_size == self.actual_size
+
+    @property
+    def equal(self) -> bool:
+        """Whether every pixel is the same."""
+        return self.same_size and self.differing == 0
+
+    @property
+    def passes(self) -> bool:
+        """Whether the two count as the same picture."""
+        return self.same_size and not self.too_far and not self.too_wide
+
+    @property
+    def headroom_pixels(self) -> int:
+        """How many more pixels might exceed the colour distance; negative when it failed."""
+        return self.pixels_limit - self.over
+
+    @property
+    def headroom_lowpass(self) -> float:
+        """How many more grey levels the 9x9 mean might reach; negative when it failed."""
+        return self.lowpass_limit - abs(self.lowpass)
+
+
+def images(
+    expected: np.ndarray,
+    actual: np.ndarray,
+    *,
+    pixels: int = PIXELS,
+    delta_e: float = DELTA_E,
+    lowpass: float = LOWPASS,
+) -> Comparison:
+    """Compare two pictures by the rule that decides whether a golden still holds.
+
+    Parameters
+    ----------
+    expected, actual : (h, w, 3) uint8
+        sRGB pictures; different sizes are a verdict, not an error.
+    pixels : int
+        How many pixels may lie beyond `delta_e`.
+    delta_e : float
+        Colour distance dE76 (CIELAB over D65) that a pixel may reach.
+    lowpass : float
+        Grey levels that the 9x9 mean of the signed difference may reach in any channel.
+
+    Returns
+    -------
+    Comparison
+        Every number the verdict rests on.
+
+    Raises
+    ------
+    ValueError
+        If a picture is not (h, w, 3) uint8 or has no pixels.
+    """
+    _check("expected", expected)
+    _check("actual", actual)
+    sizes = (_size(expected), _size(actual))
+    limits = {"pixels_limit": pixels, "delta_e_limit": delta_e, "lowpass_limit": lowpass}
+    if sizes[0] != sizes[1] or _same_bytes(expected, actual):
+        return Comparison(*sizes, **limits)
+
+    rows, columns = np.nonzero(differing(expected, actual))
+    far = delta_e76(expected[rows, columns], actual[rows, columns])
+    worst = int(far.argmax())
+    over = int(np.count_nonzero(far > delta_e))
+    # Beyond four pixels from the last differing one every mean is zero; the frame keeps the edges reflected.
+    part = _around(rows, columns, expected.shape)
+    sums = box_sums(np.subtract(actual[part], expected[part], dtype=np.int16))
+    y, x, channel = np.unravel_index(int(np.abs(sums).argmax()), sums.shape)
+    largest = int(sums[y, x, channel])
+    return Comparison(
+        *sizes,
+        differing=rows.size,
+        over=over,
+        largest_delta_e=float(far[worst]),
+        largest_delta_e_at=(int(columns[worst]), int(rows[worst])),
+        lowpass=largest / BOX**2,
+        lowpass_at=(int(x) + part[1].start, int(y) + part[0].start),
+        lowpass_channel="RGB"[channel],
+        too_far=over > pixels,
+        # On the sums, which are whole numbers: a mean of exactly the limit is still within it.
+        too_wide=abs(largest) > lowpass * BOX**2,
+        **limits,
+    )
+
+
+def differing(expected: np.ndarray, actual: np.ndarray) -> np.ndarray:
+    """Mark the pixels that are not the same.
+
+    Parameters
+    ----------
+    expected, actual : (h, w, 3) uint8
+        Pictures of one size.
+
+    Returns
+    -------
+    (h, w) bool
+        True where any channel differs.
+    """
+    unequal = expected != actual
+    # Three ors; a reduction over so short an axis takes ten times as long.
+    return unequal[..., 0] | unequal[..., 1] | unequal[..., 2]
+
+
+def delta_e76(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Colour distance dE76 of 8-bit sRGB colours.
+
+    Parameters
+    ----------
+    a, b : (..., 3) uint8
+        sRGB colours.
+
+    Returns
+    -------
+    (...) float64
+        Euclidean distance in CIELAB over the D65 white.
+    """
+    return np.linalg.norm(_lab(a) - _lab(b), axis=-1)
+
+
+def box_sums(difference: np.ndarray) -> np.ndarray:
+    """Sum the 9x9 neighbours of each pixel, each channel by itself, edges reflected (d c b a | a b c d).
+
+    Parameters
+    ----------
+    difference : (h, w, 3) int16
+        Signed difference of two 8-bit pictures.
+
+    Returns
+    -------
+    (h, w, 3) int16
+        81 times the box mean, exactly: 81 * 255 fits into 16 bits.
+    """
+    half = BOX // 2
+    padded = np.pad(difference, ((half, half), (half, half), (0, 0)), mode="symmetric")
+    # Rows, then columns; nine neighbours by doubling (2, 4, 8, and one), four additions instead of eight.
+    two = padded[:-1] + padded[1:]
+    four = two[:-2] + two[2:]
+    rows = four[:-5] + four[4:-1] + padded[8:]
+    two = rows[:, :-1] + rows[:, 1:]
+    four = two[:, :-2] + two[:, 2:]
+    return four[:, :-5] + four[:, 4:-1] + rows[:, 8:]
+
+
+def _lab(colour: np.ndarray) -> np.ndarray:
+    xyz = _LINEAR[colour] @ _XYZ.T
+    f = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz * (29 / 6) ** 2 / 3 + 4 / 29)
+    return f @ _LAB.T
+
+
+def _around(rows: np.ndarray, columns: np.ndarray, shape: tuple[int, ...]) -> tuple[slice, slice]:
+    half = BOX // 2
+    top, bottom = int(rows.min()) - half, int(rows.max()) + half + 1
+    left, right = int(columns.min()) - half, int(columns.max()) + half + 1
+    return slice(max(top, 0), min(bottom, shape[0])), slice(max(left, 0), min(right, shape[1]))
+
+
+def _same_bytes(a: np.ndarray, b: np.ndarray) -> bool:
+    if a.flags.c_contiguous and b.flags.c_contiguous and a.size % 8 == 0:
+        a, b = a.reshape(-1).view(np.uint64), b.reshape(-1).view(np.uint64)
+    return bool(np.array_equal(a, b))
+
+
+def _size(image: np.ndarray) -> tuple[int, int]:
+    return image.shape[1], image.shape[0]
+
+
+def _check(name: str, image: np.ndarray) -> None:
+    if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] != 3 or image.size == 0:
+        raise ValueError(
+            f"compare.images: {name} must be a picture (h, w, 3) uint8; got {image.shape} {image.dtype}. "
+            "Drop the alpha channel or round to 8 bits first."
+        )
