@@ -179,7 +179,9 @@ def _open(backend: str) -> tuple[moderngl.Context, Loader | None]:
         with _plain_exceptions_as_os_errors():
             return moderngl.create_context(require=330, standalone=True), None
     loader = osmesa.Loader(osmesa.load()) if backend == "osmesa" else egl.load(software=backend == "egl")
-    return moderngl.create_context(require=330, standalone=True, context=loader), loader
+    # moderngl's annotation of `context` does not know the loaders that its manual asks for.
+    settings: dict[str, Any] = {"standalone": True, "context": loader}
+    return moderngl.create_context(require=330, **settings), loader
 
 
 @contextlib.contextmanager

@@ -84,7 +84,8 @@ class Library:
         platform = _PLATFORM_SURFACELESS if device is None else _PLATFORM_DEVICE
         display = self._display(platform, device, None)
         if not display or not self.call.eglInitialize(display, None, None):
-            raise OSError(f"no EGL display: {self.error()}")
+            place = "no device" if device is None else "a device"
+            raise OSError(f"libEGL has no driver for a display on {place} ({self.error()})")
         return display
 
     def error(self) -> str:
