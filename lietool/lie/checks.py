@@ -1,0 +1,145 @@
+"""What every function asks of its arguments, and how it says no.
+
+A check is one vectorised pass.  Only when that fails are the offending index
+and number looked for, so that the message can name them.
+"""
+
+from collections.abc import Sequence
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lietool.lie import blocks
+
+TOLERANCE = 1e-6
+"""The largest entry of |R^T R - I|, or deviation of a norm from 1, that a caller may bring."""
+
+LARGEST = 1e150
+"""Squares of larger numbers overflow; squares of numbers below 1 / LARGEST vanish."""
+
+
+def fail(
+    where: str, name: str, must: str, got: str, index: Sequence[int] | None, remedy: str = ""
+) -> NoReturn:
+    """Raise the house's one-line ValueError."""
+    at = "" if index is None else f" at index ({', '.join(map(str, index))}{',' if len(index) == 1 else ''})"
+    raise ValueError(f"{where}: {name} must be {must}; got {got}{at}.{' ' + remedy if remedy else ''}")
+
+
+def first(bad: NDArray[np.bool_]) -> tuple[int, ...]:
+    """Return the batch index of the first true entry, or () for a single element."""
+    return tuple(int(i) for i in np.unravel_index(int(np.argmax(bad)), bad.shape))
+
+
+def array(
+    where: str, name: str, x: ArrayLike, core: tuple[int, ...], check: bool = True
+) -> NDArray[np.float64]:
+    """Return x as a float64 array whose trailing axes are `core`, all finite."""
+    wanted = f"numbers of shape ({', '.join(['...', *map(str, core)])})"
+    try:
+        a = np.asarray(x)
+    except ValueError:
+        fail(where, name, wanted, "a ragged list", None)
+    if a.dtype.kind not in "fiu":
+        fail(where, name, f"real {wanted}", f"dtype {a.dtype}", None)
+    a = a.astype(np.float64, copy=False)
+    if core and a.shape[-len(core) :] != core:
+        fail(
+            where,
+            name,
+            f"an array of shape ({', '.join(['...', *map(str, core)])})",
+            f"shape {a.shape}",
+            None,
+        )
+    # max propagates nan, so one pass finds nan, infinity and what would overflow when squared.
+    if check and a.size and not np.max(np.abs(a)) <= LARGEST:
+        bad = ~(np.abs(a) <= LARGEST)
+        index = first(bad)
+        batch = index[: a.ndim - len(core)]
+        limit = "finite" if not np.isfinite(a[index]) else f"at most {LARGEST:.0e} in size"
+        fail(where, name, limit, f"{a[index]}", batch)
+    return a
+
+
+def _frame_defect(R: NDArray[np.float64]) -> tuple[NDArray[np.float64]]:
+    """Measure how far the columns are from |a| = |b| = 1, a . b = 0, c = a x b: R^T R and det in one."""
+    ax, bx, cx, ay, by, cy, az, bz, cz = R
+    worst = np.abs(ax * ax + ay * ay + az * az - 1.0)
+    for defect in (
+        bx * bx + by * by + bz * bz - 1.0,
+        ax * bx + ay * by + az * bz,
+        ay * bz - az * by - cx,
+        az * bx - ax * bz - cy,
+        ax * by - ay * bx - cz,
+    ):
+        np.maximum(worst, np.abs(defect), out=worst)
+    return (worst,)
+
+
+def _plane_defect(R: NDArray[np.float64]) -> tuple[NDArray[np.float64]]:
+    a, b, c, d = R
+    return (np.maximum(np.abs(a * a + c * c - 1.0), np.maximum(np.abs(a - d), np.abs(b + c))),)
+
+
+def rotation(where: str, name: str, R: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:
+    """Return R as a float64 array of rotations: no entry of |R^T R - I| above TOLERANCE, det R > 0."""
+    a = array(where, name, R, (n, n), check)
+    if not check or not a.size:
+        return a
+    defect = blocks.run(_frame_defect if n == 3 else _plane_defect, (), (a, 2))
+    # An eighth, because this cheap measure is not the promised one; what lies between is asked for that one.
+    if np.max(defect) <= 0.125 * TOLERANCE:
+        return a
+    gram = np.max(np.abs(np.swapaxes(a, -1, -2) @ a - np.eye(n)), axis=(-1, -2))
+    if np.any(gram > TOLERANCE):
+        index = first(gram > TOLERANCE)
+        remedy = "Project it onto the rotations first."
+        fail(where, name, f"a rotation, |R^T R - I| <= {TOLERANCE:.0e}", f"{gram[index]:.1e}", index, remedy)
+    flipped = np.linalg.det(a) < 0
+    if np.any(flipped):
+        remedy = "A reflection has no logarithm here; flip one axis."
+        fail(where, name, "a rotation, det > 0", "det = -1", first(flipped), remedy)
+    return a
+
+
+def unit(where: str, name: str, x: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:
+    """Return x as a float64 array of vectors with norm 1."""
+    a = array(where, name, x, (n,), check)
+    if check and a.size:
+        defect = np.abs(np.einsum("...i,...i->...", a, a) - 1.0)
+        if not np.max(defect) <= 2 * TOLERANCE:  # the square's deviation is twice the norm's
+            index = first(defect > 2 * TOLERANCE)
+            norm = float(np.sqrt(np.sum(a[index] ** 2)))
+            what = "a unit quaternion" if n == 4 else "a unit vector"
+            fail(
+                where,
+                name,
+                f"{what}, norm within {TOLERANCE:.0e} of 1",
+                f"{norm:.6g}",
+                index,
+                "Normalise it.",
+            )
+    return a
+
+
+def nonzero(where: str, name: str, x: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:
+    """Return x as a float64 array of vectors that are not 0."""
+    a = array(where, name, x, (n,), check)
+    if check and a.size:
+        size = np.max(np.abs(a), axis=-1)
+        if not np.min(size) >= 1.0 / LARGEST:
+            small = size < 1.0 / LARGEST
+            index = first(small)
+            fail(where, name, "different from zero", f"norm {size[index]:.1e}", index)
+    return a
+
+
+def broadcast(where: str, **arrays: tuple[NDArray[np.float64], int]) -> None:
+    """Refuse arguments whose batch shapes do not go together."""
+    shapes = {name: a.shape[: a.ndim - n] for name, (a, n) in arrays.items()}
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        names = " and ".join(shapes)
+        fail(where, names, "batches that broadcast", " and ".join(map(str, shapes.values())), None)

@@ -1,0 +1,364 @@
+"""Quaternions (w, x, y, z) with Hamilton's product, and the unit ones as rotations of space.
+
+Imaginary quaternions are written as vectors of R^3.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lietool.lie import blocks, checks, series, shepperd
+from lietool.lie.slerp import nlerp as nlerp
+from lietool.lie.slerp import slerp as slerp
+
+Array = NDArray[np.float64]
+
+
+def _pair(where: str, q: ArrayLike, p: ArrayLike) -> tuple[Array, Array]:
+    a = checks.array(where, "q", q, (4,), check=False)
+    b = checks.array(where, "p", p, (4,), check=False)
+    checks.broadcast(where, q=(a, 1), p=(b, 1))
+    return a, b
+
+
+def multiply(q: ArrayLike, p: ArrayLike) -> Array:
+    """Multiply two quaternions: i j = k.
+
+    Book: (2.24), (2.29)
+
+    Parameters
+    ----------
+    q : (..., 4)
+    p : (..., 4)
+
+    Returns
+    -------
+    qp : (..., 4)
+    """
+    a, b = _pair("quaternion.multiply", q, p)
+    return np.einsum("...ij,...j->...i", left_matrix(a), b)
+
+
+def left_matrix(q: ArrayLike) -> Array:
+    """Return the matrix L with L p = q p.
+
+    Book: (2.24)
+
+    Parameters
+    ----------
+    q : (..., 4)
+
+    Returns
+    -------
+    L : (..., 4, 4)
+    """
+    a, b, c, d = np.moveaxis(checks.array("quaternion.left_matrix", "q", q, (4,), check=False), -1, 0)
+    L = np.stack([a, -b, -c, -d, b, a, -d, c, c, d, a, -b, d, -c, b, a], axis=-1)
+    return L.reshape(*L.shape[:-1], 4, 4)
+
+
+def right_matrix(q: ArrayLike) -> Array:
+    """Return the matrix M with M p = p q.
+
+    Book: (2.24), for the product in the other order
+
+    Parameters
+    ----------
+    q : (..., 4)
+
+    Returns
+    -------
+    M : (..., 4, 4)
+    """
+    a, b, c, d = np.moveaxis(checks.array("quaternion.right_matrix", "q", q, (4,), check=False), -1, 0)
+    M = np.stack([a, -b, -c, -d, b, a, d, -c, c, -d, a, b, d, c, -b, a], axis=-1)
+    return M.reshape(*M.shape[:-1], 4, 4)
+
+
+def conjugate(q: ArrayLike) -> Array:
+    """Change the sign of the imaginary part.
+
+    Book: (2.25)
+
+    Parameters
+    ----------
+    q : (..., 4)
+
+    Returns
+    -------
+    q_bar : (..., 4)
+    """
+    return checks.array("quaternion.conjugate", "q", q, (4,), check=False) * np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def dot(q: ArrayLike, p: ArrayLike) -> Array:
+    """Return the inner product of R^4, the real part of p q^-1 for unit quaternions.
+
+    Book: (2.32)
+
+    Parameters
+    ----------
+    q : (..., 4)
+    p : (..., 4)
+
+    Returns
+    -------
+    product : (...)
+    """
+    a, b = _pair("quaternion.dot", q, p)
+    return np.einsum("...i,...i->...", a, b)
+
+
+def _scaled(q: Array) -> tuple[Array, Array]:
+    """Return q by its largest entry, and that entry, so that squares neither overflow nor vanish."""
+    size = np.max(np.abs(q), axis=-1, keepdims=True)
+    return q / np.where(size > 0.0, size, 1.0), size
+
+
+def norm(q: ArrayLike) -> Array:
+    """Return the absolute value |q|.
+
+    Book: (2.25)
+
+    Parameters
+    ----------
+    q : (..., 4)
+
+    Returns
+    -------
+    length : (...)
+    """
+    scaled, size = _scaled(checks.array("quaternion.norm", "q", q, (4,), check=False))
+    return np.sqrt(np.einsum("...i,...i->...", scaled, scaled)) * size[..., 0]
+
+
+def normalize(q: ArrayLike, *, check: bool = True) -> Array:
+    """Return the unit quaternion q / |q|.
+
+    Book: (2.25)
+
+    Parameters
+    ----------
+    q : (..., 4), non-zero
+    check : bool
+        False skips the look for nan, infinity and zero.
+
+    Returns
+    -------
+    unit : (..., 4), unit quaternion
+
+    Raises
+    ------
+    ValueError
+        If q is zero or not finite.
+    """
+    scaled, _ = _scaled(checks.nonzero("quaternion.normalize", "q", q, 4, check))
+    return scaled / np.sqrt(np.einsum("...i,...i->...", scaled, scaled))[..., None]
+
+
+def inverse(q: ArrayLike, *, check: bool = True) -> Array:
+    """Return the inverse, the conjugate by the squared norm.
+
+    Book: (2.25)
+
+    Parameters
+    ----------
+    q : (..., 4), non-zero
+    check : bool
+        False skips the look for nan, infinity and zero.
+
+    Returns
+    -------
+    q_inverse : (..., 4)
+
+    Raises
+    ------
+    ValueError
+        If q is zero or not finite.
+    """
+    q = checks.nonzero("quaternion.inverse", "q", q, 4, check)
+    return conjugate(q) / np.einsum("...i,...i->...", q, q)[..., None]
+
+
+def _exp_rows(x: Array) -> blocks.Rows:
+    theta = np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
+    a = series.sinc(theta)
+    return np.cos(theta), a * x[0], a * x[1], a * x[2]
+
+
+def exp(x: ArrayLike, *, check: bool = True) -> Array:
+    """Return exp(theta u) = cos(theta) + sin(theta) u, with no half angle: it turns space by 2 theta.
+
+    Book: (2.31)
+
+    Parameters
+    ----------
+    x : (..., 3), radians
+        The imaginary quaternion theta u.
+    check : bool
+        False skips the look for nan and infinity.
+
+    Returns
+    -------
+    q : (..., 4), unit quaternion
+
+    Raises
+    ------
+    ValueError
+        If x is not finite.
+    """
+    return blocks.run(_exp_rows, (4,), (checks.array("quaternion.exp", "x", x, (3,), check), 1))
+
+
+def _log_rows(q: Array) -> blocks.Rows:
+    w, x, y, z = q
+    s = np.sqrt(x * x + y * y + z * z)
+    # At q = -1 every axis serves; the first is taken.
+    opposite = (s == 0.0) & (w < 0.0)
+    f = series.angle_over_sine(s, np.where(opposite, 1.0, w))
+    return np.where(opposite, np.pi, f * x), f * y, f * z
+
+
+def log(q: ArrayLike, *, check: bool = True) -> Array:
+    """Return the principal logarithm theta u of a unit quaternion, 0 <= theta <= pi.
+
+    At q = -1, where every unit u serves, it is (pi, 0, 0).
+
+    Book: (2.31)
+
+    Parameters
+    ----------
+    q : (..., 4), unit quaternion
+    check : bool
+        False skips the look for nan, infinity and other norms than 1.
+
+    Returns
+    -------
+    x : (..., 3), radians
+
+    Raises
+    ------
+    ValueError
+        If q is not a unit quaternion.
+    """
+    return blocks.run(_log_rows, (3,), (checks.unit("quaternion.log", "q", q, 4, check), 1))
+
+
+def act(q: ArrayLike, p: ArrayLike, *, check: bool = True) -> Array:
+    """Turn points by p -> q p q^-1.
+
+    Book: (2.27), (2.28)
+
+    Parameters
+    ----------
+    q : (..., 4), non-zero
+    p : (..., 3)
+    check : bool
+        False skips the look for nan, infinity and zero.
+
+    Returns
+    -------
+    turned : (..., 3)
+
+    Raises
+    ------
+    ValueError
+        If q is zero or not finite.
+    """
+    q = checks.nonzero("quaternion.act", "q", q, 4, check)
+    p = checks.array("quaternion.act", "p", p, (3,), check=False)
+    checks.broadcast("quaternion.act", q=(q, 1), p=(p, 1))
+    return np.einsum("...ij,...j->...i", to_matrix(q, check=False), p)
+
+
+def _matrix_rows(q: Array) -> blocks.Rows:
+    w, x, y, z = q
+    s = 2.0 / (w * w + x * x + y * y + z * z)
+    wx, wy, wz, xx, yy, zz = s * w * x, s * w * y, s * w * z, s * x * x, s * y * y, s * z * z
+    xy, xz, yz = s * x * y, s * x * z, s * y * z
+    return (
+        *(1.0 - (yy + zz), xy - wz, xz + wy),
+        *(xy + wz, 1.0 - (xx + zz), yz - wx),
+        *(xz - wy, yz + wx, 1.0 - (xx + yy)),
+    )
+
+
+def to_matrix(q: ArrayLike, *, check: bool = True) -> Array:
+    """Return the matrix of p -> q p q^-1; q and every multiple of it give the same.
+
+    Book: (2.28), (2.29), (2.30)
+
+    Parameters
+    ----------
+    q : (..., 4), non-zero
+    check : bool
+        False skips the look for nan, infinity and zero.
+
+    Returns
+    -------
+    R : (..., 3, 3), rotation
+
+    Raises
+    ------
+    ValueError
+        If q is zero or not finite.
+    """
+    return blocks.run(_matrix_rows, (3, 3), (checks.nonzero("quaternion.to_matrix", "q", q, 4, check), 1))
+
+
+def _from_matrix_rows(R: Array) -> blocks.Rows:
+    w, x, y, z = shepperd.quaternion(R)
+    f = 1.0 / np.sqrt(w * w + x * x + y * y + z * z)
+    return f * w, f * x, f * y, f * z
+
+
+def from_matrix(R: ArrayLike, *, check: bool = True) -> Array:
+    """Return the unit quaternion of a rotation, the one of the two with w >= 0.
+
+    At w = 0 the largest component is positive.
+
+    Book: (2.29), (2.30)
+
+    Parameters
+    ----------
+    R : (..., 3, 3), rotation
+    check : bool
+        False skips the look for nan, infinity and matrices that are not rotations.
+
+    Returns
+    -------
+    q : (..., 4), unit quaternion
+
+    Raises
+    ------
+    ValueError
+        If R is not a rotation.
+    """
+    R = checks.rotation("quaternion.from_matrix", "R", R, 3, check)
+    return blocks.run(_from_matrix_rows, (4,), (R, 2))
+
+
+def from_axis_angle(u: ArrayLike, theta: ArrayLike, *, check: bool = True) -> Array:
+    """Return the unit quaternion cos(theta/2) + sin(theta/2) u that turns space by theta about u.
+
+    Book: (2.26)
+
+    Parameters
+    ----------
+    u : (..., 3), unit vector
+    theta : (...), radians
+    check : bool
+        False skips the look for nan, infinity and vectors of another length.
+
+    Returns
+    -------
+    q : (..., 4), unit quaternion
+
+    Raises
+    ------
+    ValueError
+        If u is not a unit vector or theta is not finite.
+    """
+    u = checks.unit("quaternion.from_axis_angle", "u", u, 3, check)
+    theta = checks.array("quaternion.from_axis_angle", "theta", theta, (), check)
+    checks.broadcast("quaternion.from_axis_angle", u=(u, 1), theta=(theta, 0))
+    return exp(0.5 * theta[..., None] * u, check=False)

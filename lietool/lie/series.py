@@ -1,0 +1,185 @@
+"""The coefficients like (sin t)/t, and every threshold that decides when an angle counts as small.
+
+Each function is even or odd in its angle, defined at 0, and accurate to a few
+ulp on both sides of its switch; nothing else in the package may test an angle
+for smallness.
+"""
+
+from math import factorial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+ROUNDED = 4 * np.finfo(np.float64).eps
+"""Radians. In a rotation whose entries have been rounded, a smaller angle cannot be told from 0."""
+
+_TINY = 1e-300  # stands in for an exact 0: sin and atan2 return it unchanged, so the quotient is the limit
+
+# (t - sin t) / t^3: where the subtraction keeps all but two bits, t - sin t > t / 4.
+_DEFECT_SWITCH = 1.6
+_DEFECT = [(-1.0) ** k / factorial(2 * k + 3) for k in range(12)]
+
+# (sin h - h cos h) / h^3, an entire function; for h > 1 the subtraction keeps all but two bits.
+_LEVER_SWITCH = 1.0
+_LEVER = [(-1.0) ** k * (2 * k + 2) / factorial(2 * k + 3) for k in range(10)]
+
+
+def _polynomial(coefficients: list[float], x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Evaluate sum c_k x^k by Horner's rule."""
+    value = np.full_like(x, coefficients[-1])
+    for coefficient in reversed(coefficients[:-1]):
+        value = value * x + coefficient
+    return value
+
+
+def sinc(t: ArrayLike) -> NDArray[np.float64]:
+    """Divide the sine of an angle by the angle: (sin t) / t, and 1 at 0.
+
+    Book: (7.4)
+
+    Parameters
+    ----------
+    t : (...), radians
+        Any angle.
+
+    Returns
+    -------
+    value : (...)
+    """
+    t = np.asarray(t, dtype=np.float64)
+    t = np.where(t == 0.0, _TINY, t)
+    return np.sin(t) / t
+
+
+def versinc(t: ArrayLike) -> NDArray[np.float64]:
+    """Divide the versed sine of an angle by its square: (1 - cos t) / t^2, and 1/2 at 0.
+
+    It is half the square of `sinc` of t/2, which subtracts nothing.
+
+    Book: (7.4)
+    Kaji-Ochiai: (4)
+
+    Parameters
+    ----------
+    t : (...), radians
+        Any angle.
+
+    Returns
+    -------
+    value : (...)
+    """
+    half = sinc(0.5 * np.asarray(t, dtype=np.float64))
+    return 0.5 * half * half
+
+
+def rodrigues(t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return both coefficients of Rodrigues' formula, `sinc` and `versinc`, from one sine and one cosine.
+
+    Book: (7.4)
+
+    Parameters
+    ----------
+    t : (...), radians
+        Any angle.
+
+    Returns
+    -------
+    a : (...)
+        (sin t) / t.
+    b : (...)
+        (1 - cos t) / t^2.
+    """
+    h = 0.5 * np.asarray(t, dtype=np.float64)
+    half = sinc(h)
+    return half * np.cos(h), 0.5 * half * half
+
+
+def sine_defect(t: ArrayLike) -> NDArray[np.float64]:
+    """Divide what the sine lacks by the cube of the angle: (t - sin t) / t^3, and 1/6 at 0.
+
+    Book: (7.5)
+
+    Parameters
+    ----------
+    t : (...), radians
+        Any angle.
+
+    Returns
+    -------
+    value : (...)
+    """
+    t = np.abs(np.asarray(t, dtype=np.float64))
+    near = np.minimum(t, _DEFECT_SWITCH)
+    far = np.maximum(t, _DEFECT_SWITCH)
+    return np.where(
+        t < _DEFECT_SWITCH, _polynomial(_DEFECT, near * near), (far - np.sin(far)) / (far * far * far)
+    )
+
+
+def cotangent_defect(t: ArrayLike) -> NDArray[np.float64]:
+    """Return (1 - (t/2) cot(t/2)) / t^2, and 1/12 at 0: the second coefficient of the inverse left Jacobian.
+
+    With h = t/2 it is (sin h - h cos h) / (4 h^2 sin h).  The printed (7.8)
+    is 0/0 at t = pi; this form is not.
+
+    Book: (7.8)
+
+    Parameters
+    ----------
+    t : (...), radians
+        Any angle except the poles 2 pi n, n not 0.
+
+    Returns
+    -------
+    value : (...)
+    """
+    h = 0.5 * np.abs(np.asarray(t, dtype=np.float64))
+    near = np.minimum(h, _LEVER_SWITCH)
+    far = np.maximum(h, _LEVER_SWITCH)
+    sine = np.sin(far)
+    return np.where(
+        h < _LEVER_SWITCH,
+        _polynomial(_LEVER, near * near) / (4.0 * sinc(near)),
+        (sine - far * np.cos(far)) / (4.0 * far * far * sine),
+    )
+
+
+def angle_over_sine(s: ArrayLike, c: ArrayLike) -> NDArray[np.float64]:
+    """Divide the angle of the point (c, s) by s: atan2(s, c) / s, and 1/c at s = 0.
+
+    This carries the imaginary part of a quaternion, of norm s, to its logarithm.
+    The norm of (c, s) need not be 1: the angle does not change with it.
+
+    Book: (2.31)
+
+    Parameters
+    ----------
+    s : (...), positive
+        The sine, or a positive multiple of it; 0 only together with c > 0.
+    c : (...), positive
+        The cosine, or the same multiple of it.
+
+    Returns
+    -------
+    value : (...), radians
+    """
+    s = np.asarray(s, dtype=np.float64)
+    s = np.where(s == 0.0, _TINY, s)
+    return np.arctan2(s, c) / s
+
+
+def at_pole(t: ArrayLike) -> NDArray[np.bool_]:
+    """Tell whether an angle is 2 pi n, n not 0, up to its rounding: a pole of `cotangent_defect`.
+
+    Book: (4.30)
+
+    Parameters
+    ----------
+    t : (...), radians
+
+    Returns
+    -------
+    pole : (...)
+    """
+    t = np.abs(np.asarray(t, dtype=np.float64))
+    return (t > 1.0) & (np.abs(np.sin(0.5 * t)) <= 0.25 * ROUNDED * np.maximum(t, 1.0))
