@@ -1,0 +1,177 @@
+"""The command of a figure: its parameters and plates as options, help and completion."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import click
+from click.shell_completion import CompletionItem
+
+from lietool.figure import Figure, Parameter, nearest, plates
+from lietool.verbs import _picture
+
+# Repeated here so that completion need not load OpenGL; a test compares it with `render.context`.
+BACKENDS = ("osmesa", "egl", "gpu", "system")
+_METAVARS = {"float": "NUMBER", "int": "N", "str": "TEXT", "path": "FILE"}
+
+
+def command(figure: Figure) -> click.Command:
+    """Return the click command of a figure; its options are the figure's parameters and the common ones."""
+    return _Command(figure)
+
+
+class _Command(click.Command):
+    """A command whose help has a section for its parameters and one for its plates."""
+
+    def __init__(self, figure: Figure) -> None:
+        self.figure = figure
+        super().__init__(
+            figure.name,
+            callback=self._run,
+            params=[*map(_option, figure.parameters), *_common(figure)],
+            help=figure.help,
+            short_help=figure.summary,
+        )
+
+    def _run(
+        self,
+        *,
+        output: str | None,
+        plate: str | None,
+        size: tuple[int, int] | None,
+        draft: bool,
+        json: bool,
+        backend: str | None,
+        **given: object,
+    ) -> None:
+        # An option that is not given is None, for it has no default of its own.
+        explicit = {name: value for name, value in given.items() if value is not None}
+        params = (self.figure.plate_params(plate) if plate else {}) | explicit
+        quality = _picture.Quality(size, draft, backend)
+        _picture.make(self.figure, params, output, quality, numbers=json, swept=set(explicit))
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        own = {parameter.name for parameter in self.figure.parameters}
+        sections: dict[str, list[tuple[str, str]]] = {"Parameters": [], "Options": []}
+        for option in self.get_params(ctx):
+            if record := option.get_help_record(ctx):
+                sections["Parameters" if option.name in own else "Options"].append(record)
+        for title in ("Parameters", "Plates", "Options"):
+            if rows := _described(self.figure) if title == "Plates" else sections[title]:
+                with formatter.section(title):
+                    formatter.write_dl(rows)
+
+
+def _described(figure: Figure) -> list[tuple[str, str]]:
+    """Id and description of every plate."""
+    rows = []
+    for plate_id, plate in figure.plates.items():
+        equations = f" ({', '.join(plate.equations)})" if plate.equations else ""
+        rows.append((plate_id, plate.title + equations))
+    return rows
+
+
+class _Value(click.ParamType):
+    """The text form of a figure's parameter."""
+
+    name = "value"
+
+    def __init__(self, parameter: Parameter) -> None:
+        self.parameter = parameter
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        mine = self.parameter
+        try:
+            return mine.parse(value)
+        except ValueError as error:
+            hint = "." + nearest(value, mine.param.choices)
+            if not mine.param.choices and mine.default is not None:
+                hint = f". Write for example {mine.option} {mine.text(mine.default)}"
+            raise click.UsageError(f"{mine.option} {error}{hint}", ctx) from None
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        if self.parameter.kind == "path":
+            return [CompletionItem(incomplete, type="file")]
+        return [CompletionItem(item) for item in self.parameter.param.choices if item.startswith(incomplete)]
+
+
+class _PlateId(click.ParamType):
+    """A plate of one figure."""
+
+    name = "id"
+
+    def __init__(self, figure: Figure) -> None:
+        self.figure = figure
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        own = {plate_id.lower(): plate_id for plate_id in self.figure.plates}
+        if value.lower() in own:
+            return own[value.lower()]
+        every = plates()
+        if value in every:
+            message = (
+                f"plate {value} belongs to another command. Write lietool {every[value]} --plate {value}"
+            )
+        else:
+            ids = ", ".join(self.figure.plates)
+            message = f"--plate must be one of {ids}; got {value!r}.{nearest(value, every)}"
+        raise click.UsageError(message, ctx)
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        rows = _described(self.figure)
+        return [
+            CompletionItem(plate_id, help=text) for plate_id, text in rows if plate_id.startswith(incomplete)
+        ]
+
+
+class _Size(click.ParamType):
+    """Width and height in pixels."""
+
+    name = "size"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if match := re.fullmatch(r"([1-9][0-9]{0,5})[xX]([1-9][0-9]{0,5})", value):
+            return int(match[1]), int(match[2])
+        raise click.UsageError(
+            f"--size must be width x height in pixels; got {value!r}. Write for example --size 1200x900",
+            ctx,
+        )
+
+
+def _option(parameter: Parameter) -> click.Option:
+    param, default = parameter.param, parameter.default
+    facts = [parameter.range] if parameter.range else []
+    if parameter.kind == "bool":
+        on, off = parameter.option, f"--no-{parameter.option[2:]}"
+        about = f"{param.help} [default {on if default else off}]"
+        return click.Option([f"{on}/{off}", parameter.name], default=None, help=about)
+    if default is not None:
+        facts.append(f"default {parameter.text(default)}")
+    metavar = _METAVARS.get(parameter.kind) or parameter.components.upper()
+    if param.choices:
+        metavar = "|".join(param.choices)
+    elif not metavar:
+        metavar = ",".join("N" * parameter.length) or "N,N,..."
+    about = param.help + (f" [{'; '.join(facts)}]" if facts else "")
+    return click.Option(
+        [parameter.option, parameter.name], type=_Value(parameter), metavar=metavar, help=about
+    )
+
+
+def _common(figure: Figure) -> Iterator[click.Option]:
+    endings = " or ".join(_picture.ENDINGS)
+    about = f"File to write; it ends in {endings}. [default ./{figure.name}.png]"
+    yield click.Option(["-o", "--output"], type=click.Path(), metavar="FILE", help=about)
+    yield click.Option(
+        ["--plate"], type=_PlateId(figure), metavar="ID", help="Start from this plate's parameters."
+    )
+    yield click.Option(["--size"], type=_Size(), metavar="WxH", help="Pixels. [default: the picture's own]")
+    yield click.Option(["--draft"], is_flag=True, help="Faster, with coarser edges.")
+    yield click.Option(
+        ["--json"], is_flag=True, help="Print the numbers shown; without -o, no picture is made."
+    )
+    yield click.Option(["--backend"], type=click.Choice(BACKENDS), help="Where OpenGL comes from.")
