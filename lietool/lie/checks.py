@@ -10,7 +10,7 @@ from typing import NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lietool.lie import blocks
+from lietool.lie import blocks, kernels
 
 TOLERANCE = 1e-6
 """The largest entry of |R^T R - I|, or deviation of a norm from 1, that a caller may bring."""
@@ -52,8 +52,8 @@ def array(
             f"shape {a.shape}",
             None,
         )
-    # max propagates nan, so one pass finds nan, infinity and what would overflow when squared.
-    if check and a.size and not np.max(np.abs(a)) <= LARGEST:
+    # Both propagate nan, so they find nan, infinity and what would overflow when squared.
+    if check and a.size and not (np.max(a) <= LARGEST and np.min(a) >= -LARGEST):
         bad = ~(np.abs(a) <= LARGEST)
         index = first(bad)
         batch = index[: a.ndim - len(core)]
@@ -62,35 +62,17 @@ def array(
     return a
 
 
-def _frame_defect(R: NDArray[np.float64]) -> tuple[NDArray[np.float64]]:
-    """Measure how far the columns are from |a| = |b| = 1, a . b = 0, c = a x b: R^T R and det in one."""
-    ax, bx, cx, ay, by, cy, az, bz, cz = R
-    worst = np.abs(ax * ax + ay * ay + az * az - 1.0)
-    for defect in (
-        bx * bx + by * by + bz * bz - 1.0,
-        ax * bx + ay * by + az * bz,
-        ay * bz - az * by - cx,
-        az * bx - ax * bz - cy,
-        ax * by - ay * bx - cz,
-    ):
-        np.maximum(worst, np.abs(defect), out=worst)
-    return (worst,)
-
-
-def _plane_defect(R: NDArray[np.float64]) -> tuple[NDArray[np.float64]]:
-    a, b, c, d = R
-    return (np.maximum(np.abs(a * a + c * c - 1.0), np.maximum(np.abs(a - d), np.abs(b + c))),)
-
-
 def rotation(where: str, name: str, R: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:
     """Return R as a float64 array of rotations: no entry of |R^T R - I| above TOLERANCE, det R > 0."""
-    a = array(where, name, R, (n, n), check)
+    a = array(where, name, R, (n, n), check=False)
     if not check or not a.size:
         return a
-    defect = blocks.run(_frame_defect if n == 3 else _plane_defect, (), (a, 2))
+    with np.errstate(invalid="ignore", over="ignore"):
+        defect = blocks.run(kernels.space_defect if n == 3 else kernels.plane_defect, (), (a, 2))
     # An eighth, because this cheap measure is not the promised one; what lies between is asked for that one.
     if np.max(defect) <= 0.125 * TOLERANCE:
         return a
+    array(where, name, a, (n, n))
     gram = np.max(np.abs(np.swapaxes(a, -1, -2) @ a - np.eye(n)), axis=(-1, -2))
     if np.any(gram > TOLERANCE):
         index = first(gram > TOLERANCE)

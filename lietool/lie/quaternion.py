@@ -6,7 +6,7 @@ Imaginary quaternions are written as vectors of R^3.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lietool.lie import blocks, checks, series, shepperd
+from lietool.lie import blocks, checks, kernels
 from lietool.lie.slerp import nlerp as nlerp
 from lietool.lie.slerp import slerp as slerp
 
@@ -56,24 +56,6 @@ def left_matrix(q: ArrayLike) -> Array:
     return L.reshape(*L.shape[:-1], 4, 4)
 
 
-def right_matrix(q: ArrayLike) -> Array:
-    """Return the matrix M with M p = p q.
-
-    Book: (2.24), for the product in the other order
-
-    Parameters
-    ----------
-    q : (..., 4)
-
-    Returns
-    -------
-    M : (..., 4, 4)
-    """
-    a, b, c, d = np.moveaxis(checks.array("quaternion.right_matrix", "q", q, (4,), check=False), -1, 0)
-    M = np.stack([a, -b, -c, -d, b, a, d, -c, c, -d, a, b, d, c, -b, a], axis=-1)
-    return M.reshape(*M.shape[:-1], 4, 4)
-
-
 def conjugate(q: ArrayLike) -> Array:
     """Change the sign of the imaginary part.
 
@@ -108,12 +90,6 @@ def dot(q: ArrayLike, p: ArrayLike) -> Array:
     return np.einsum("...i,...i->...", a, b)
 
 
-def _scaled(q: Array) -> tuple[Array, Array]:
-    """Return q by its largest entry, and that entry, so that squares neither overflow nor vanish."""
-    size = np.max(np.abs(q), axis=-1, keepdims=True)
-    return q / np.where(size > 0.0, size, 1.0), size
-
-
 def norm(q: ArrayLike) -> Array:
     """Return the absolute value |q|.
 
@@ -127,7 +103,10 @@ def norm(q: ArrayLike) -> Array:
     -------
     length : (...)
     """
-    scaled, size = _scaled(checks.array("quaternion.norm", "q", q, (4,), check=False))
+    q = checks.array("quaternion.norm", "q", q, (4,), check=False)
+    # Scaled by its largest entry first, so that squares neither overflow nor vanish.
+    size = np.max(np.abs(q), axis=-1, keepdims=True)
+    scaled = q / np.where(size > 0.0, size, 1.0)
     return np.sqrt(np.einsum("...i,...i->...", scaled, scaled)) * size[..., 0]
 
 
@@ -139,8 +118,7 @@ def normalize(q: ArrayLike, *, check: bool = True) -> Array:
     Parameters
     ----------
     q : (..., 4), non-zero
-    check : bool
-        False skips the look for nan, infinity and zero.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -151,8 +129,8 @@ def normalize(q: ArrayLike, *, check: bool = True) -> Array:
     ValueError
         If q is zero or not finite.
     """
-    scaled, _ = _scaled(checks.nonzero("quaternion.normalize", "q", q, 4, check))
-    return scaled / np.sqrt(np.einsum("...i,...i->...", scaled, scaled))[..., None]
+    q = checks.nonzero("quaternion.normalize", "q", q, 4, check)
+    return q / norm(q)[..., None]
 
 
 def inverse(q: ArrayLike, *, check: bool = True) -> Array:
@@ -163,8 +141,7 @@ def inverse(q: ArrayLike, *, check: bool = True) -> Array:
     Parameters
     ----------
     q : (..., 4), non-zero
-    check : bool
-        False skips the look for nan, infinity and zero.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -179,12 +156,6 @@ def inverse(q: ArrayLike, *, check: bool = True) -> Array:
     return conjugate(q) / np.einsum("...i,...i->...", q, q)[..., None]
 
 
-def _exp_rows(x: Array) -> blocks.Rows:
-    theta = np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
-    a = series.sinc(theta)
-    return np.cos(theta), a * x[0], a * x[1], a * x[2]
-
-
 def exp(x: ArrayLike, *, check: bool = True) -> Array:
     """Return exp(theta u) = cos(theta) + sin(theta) u, with no half angle: it turns space by 2 theta.
 
@@ -194,8 +165,7 @@ def exp(x: ArrayLike, *, check: bool = True) -> Array:
     ----------
     x : (..., 3), radians
         The imaginary quaternion theta u.
-    check : bool
-        False skips the look for nan and infinity.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -206,16 +176,7 @@ def exp(x: ArrayLike, *, check: bool = True) -> Array:
     ValueError
         If x is not finite.
     """
-    return blocks.run(_exp_rows, (4,), (checks.array("quaternion.exp", "x", x, (3,), check), 1))
-
-
-def _log_rows(q: Array) -> blocks.Rows:
-    w, x, y, z = q
-    s = np.sqrt(x * x + y * y + z * z)
-    # At q = -1 every axis serves; the first is taken.
-    opposite = (s == 0.0) & (w < 0.0)
-    f = series.angle_over_sine(s, np.where(opposite, 1.0, w))
-    return np.where(opposite, np.pi, f * x), f * y, f * z
+    return blocks.run(kernels.quaternion_exp, (4,), (checks.array("quaternion.exp", "x", x, (3,), check), 1))
 
 
 def log(q: ArrayLike, *, check: bool = True) -> Array:
@@ -228,8 +189,7 @@ def log(q: ArrayLike, *, check: bool = True) -> Array:
     Parameters
     ----------
     q : (..., 4), unit quaternion
-    check : bool
-        False skips the look for nan, infinity and other norms than 1.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -240,7 +200,7 @@ def log(q: ArrayLike, *, check: bool = True) -> Array:
     ValueError
         If q is not a unit quaternion.
     """
-    return blocks.run(_log_rows, (3,), (checks.unit("quaternion.log", "q", q, 4, check), 1))
+    return blocks.run(kernels.quaternion_log, (3,), (checks.unit("quaternion.log", "q", q, 4, check), 1))
 
 
 def act(q: ArrayLike, p: ArrayLike, *, check: bool = True) -> Array:
@@ -252,8 +212,7 @@ def act(q: ArrayLike, p: ArrayLike, *, check: bool = True) -> Array:
     ----------
     q : (..., 4), non-zero
     p : (..., 3)
-    check : bool
-        False skips the look for nan, infinity and zero.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -270,18 +229,6 @@ def act(q: ArrayLike, p: ArrayLike, *, check: bool = True) -> Array:
     return np.einsum("...ij,...j->...i", to_matrix(q, check=False), p)
 
 
-def _matrix_rows(q: Array) -> blocks.Rows:
-    w, x, y, z = q
-    s = 2.0 / (w * w + x * x + y * y + z * z)
-    wx, wy, wz, xx, yy, zz = s * w * x, s * w * y, s * w * z, s * x * x, s * y * y, s * z * z
-    xy, xz, yz = s * x * y, s * x * z, s * y * z
-    return (
-        *(1.0 - (yy + zz), xy - wz, xz + wy),
-        *(xy + wz, 1.0 - (xx + zz), yz - wx),
-        *(xz - wy, yz + wx, 1.0 - (xx + yy)),
-    )
-
-
 def to_matrix(q: ArrayLike, *, check: bool = True) -> Array:
     """Return the matrix of p -> q p q^-1; q and every multiple of it give the same.
 
@@ -290,8 +237,7 @@ def to_matrix(q: ArrayLike, *, check: bool = True) -> Array:
     Parameters
     ----------
     q : (..., 4), non-zero
-    check : bool
-        False skips the look for nan, infinity and zero.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -302,13 +248,7 @@ def to_matrix(q: ArrayLike, *, check: bool = True) -> Array:
     ValueError
         If q is zero or not finite.
     """
-    return blocks.run(_matrix_rows, (3, 3), (checks.nonzero("quaternion.to_matrix", "q", q, 4, check), 1))
-
-
-def _from_matrix_rows(R: Array) -> blocks.Rows:
-    w, x, y, z = shepperd.quaternion(R)
-    f = 1.0 / np.sqrt(w * w + x * x + y * y + z * z)
-    return f * w, f * x, f * y, f * z
+    return blocks.run(kernels.matrix, (3, 3), (checks.nonzero("quaternion.to_matrix", "q", q, 4, check), 1))
 
 
 def from_matrix(R: ArrayLike, *, check: bool = True) -> Array:
@@ -321,8 +261,7 @@ def from_matrix(R: ArrayLike, *, check: bool = True) -> Array:
     Parameters
     ----------
     R : (..., 3, 3), rotation
-    check : bool
-        False skips the look for nan, infinity and matrices that are not rotations.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -334,7 +273,7 @@ def from_matrix(R: ArrayLike, *, check: bool = True) -> Array:
         If R is not a rotation.
     """
     R = checks.rotation("quaternion.from_matrix", "R", R, 3, check)
-    return blocks.run(_from_matrix_rows, (4,), (R, 2))
+    return blocks.run(kernels.quaternion, (4,), (R, 2))
 
 
 def from_axis_angle(u: ArrayLike, theta: ArrayLike, *, check: bool = True) -> Array:
@@ -346,8 +285,7 @@ def from_axis_angle(u: ArrayLike, theta: ArrayLike, *, check: bool = True) -> Ar
     ----------
     u : (..., 3), unit vector
     theta : (...), radians
-    check : bool
-        False skips the look for nan, infinity and vectors of another length.
+    check : bool, False to trust the values
 
     Returns
     -------

@@ -54,8 +54,7 @@ def exp(x: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
     Parameters
     ----------
     x : (...), radians
-    check : bool
-        False skips the look for nan and infinity.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -79,8 +78,7 @@ def log(R: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
     Parameters
     ----------
     R : (..., 2, 2), rotation
-    check : bool
-        False skips the look for nan, infinity and matrices that are not rotations.
+    check : bool, False to trust the values
 
     Returns
     -------

@@ -3,9 +3,11 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lietool.lie import blocks, checks, series, shepperd
-
-AXES = ("x", "y", "z")
+from lietool.lie import blocks, checks, kernels, series
+from lietool.lie.axis_angle import AXES as AXES
+from lietool.lie.axis_angle import from_axis_angle as from_axis_angle
+from lietool.lie.axis_angle import rotation as rotation
+from lietool.lie.axis_angle import to_axis_angle as to_axis_angle
 
 
 def hat(x: ArrayLike) -> NDArray[np.float64]:
@@ -47,20 +49,6 @@ def vee(X: ArrayLike) -> NDArray[np.float64]:
     return 0.5 * np.stack([D[..., 2, 1], D[..., 0, 2], D[..., 1, 0]], axis=-1)
 
 
-def _exp_rows(x: NDArray[np.float64]) -> blocks.Rows:
-    """Rodrigues' formula I + a X + b X^2, X^2 = x x^T - |x|^2 I."""
-    x, y, z = x
-    a, b = series.rodrigues(np.sqrt(x * x + y * y + z * z))
-    bx, by, bz = b * x, b * y, b * z
-    ax, ay, az = a * x, a * y, a * z
-    xx, yy, zz, xy, xz, yz = bx * x, by * y, bz * z, bx * y, bx * z, by * z
-    return (
-        *(1.0 - (yy + zz), xy - az, xz + ay),
-        *(xy + az, 1.0 - (xx + zz), yz - ax),
-        *(xz - ay, yz + ax, 1.0 - (xx + yy)),
-    )
-
-
 def exp(x: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
     """Return the rotation about x by the angle |x|.
 
@@ -71,8 +59,7 @@ def exp(x: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
     ----------
     x : (..., 3), radians
         Axis times angle, of any length.
-    check : bool
-        False skips the look for nan and infinity.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -84,14 +71,7 @@ def exp(x: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
         If x is not finite.
     """
     x = checks.array("so3.exp", "x", x, (3,), check)
-    return blocks.run(_exp_rows, (3, 3), (x, 1))
-
-
-def _log_rows(R: NDArray[np.float64]) -> blocks.Rows:
-    w, x, y, z = shepperd.quaternion(R)
-    # x, y, z are sin(theta/2) u and w is cos(theta/2), both to the same scale.
-    f = 2.0 * series.angle_over_sine(np.sqrt(x * x + y * y + z * z), w)
-    return f * x, f * y, f * z
+    return blocks.run(kernels.rodrigues, (3, 3), (x, 1))
 
 
 def log(R: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
@@ -107,8 +87,7 @@ def log(R: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
     Parameters
     ----------
     R : (..., 3, 3), rotation
-    check : bool
-        False skips the look for nan, infinity and matrices that are not rotations.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -120,7 +99,7 @@ def log(R: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
         If R is not a rotation.
     """
     R = checks.rotation("so3.log", "R", R, 3, check)
-    return blocks.run(_log_rows, (3,), (R, 2))
+    return blocks.run(kernels.rotation_log, (3,), (R, 2))
 
 
 def _round(turns: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -146,8 +125,7 @@ def log_near(
     R : (..., 3, 3), rotation
     reference : (..., 3), radians
         Axis times angle, of any length.
-    check : bool
-        False skips the look for nan, infinity and matrices that are not rotations.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -247,8 +225,7 @@ def left_jacobian(x: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
     Parameters
     ----------
     x : (..., 3), radians
-    check : bool
-        False skips the look for nan and infinity.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -273,8 +250,7 @@ def left_jacobian_inverse(x: ArrayLike, *, check: bool = True) -> NDArray[np.flo
     ----------
     x : (..., 3), radians
         Not of length 2 pi n, n >= 1, where the left Jacobian is singular.
-    check : bool
-        False skips the look for nan, infinity and singular points.
+    check : bool, False to trust the values
 
     Returns
     -------
@@ -294,94 +270,3 @@ def left_jacobian_inverse(x: ArrayLike, *, check: bool = True) -> NDArray[np.flo
             index = checks.first(singular)
             checks.fail(where, "x", "not of length 2 pi n, n >= 1", f"length {theta[index]:.17g}", index)
     return _second_order(x, np.full_like(theta, -0.5), series.cotangent_defect(theta))
-
-
-def from_axis_angle(u: ArrayLike, theta: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
-    """Return the rotation about a unit vector by an angle.
-
-    Book: (2.14), (2.15), (A.1), (A.2), (A.3), (A.4), (A.5), (A.7)
-
-    Parameters
-    ----------
-    u : (..., 3), unit vector
-    theta : (...), radians
-    check : bool
-        False skips the look for nan, infinity and vectors of another length.
-
-    Returns
-    -------
-    R : (..., 3, 3), rotation
-
-    Raises
-    ------
-    ValueError
-        If u is not a unit vector or theta is not finite.
-    """
-    u = checks.unit("so3.from_axis_angle", "u", u, 3, check)
-    theta = checks.array("so3.from_axis_angle", "theta", theta, (), check)
-    checks.broadcast("so3.from_axis_angle", u=(u, 1), theta=(theta, 0))
-    return exp(theta[..., None] * u, check=False)
-
-
-def to_axis_angle(R: ArrayLike, *, check: bool = True) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the axis and the angle of a rotation; for the identity, the x-axis and 0.
-
-    Book: (2.16), (2.19), (7.6), (7.7)
-
-    Parameters
-    ----------
-    R : (..., 3, 3), rotation
-    check : bool
-        False skips the look for nan, infinity and matrices that are not rotations.
-
-    Returns
-    -------
-    u : (..., 3), unit vector
-    theta : (...), radians
-        In [0, pi].
-
-    Raises
-    ------
-    ValueError
-        If R is not a rotation.
-    """
-    x = log(checks.rotation("so3.to_axis_angle", "R", R, 3, check), check=False)
-    # Scaled by its largest entry first, for the square of an angle below 1e-154 vanishes.
-    size = np.max(np.abs(x), axis=-1, keepdims=True)
-    direction = np.where(size > 0.0, x / np.where(size > 0.0, size, 1.0), np.array([1.0, 0.0, 0.0]))
-    norm = np.linalg.norm(direction, axis=-1, keepdims=True)
-    return direction / norm, (size * norm)[..., 0]
-
-
-def rotation(axis: str, theta: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
-    """Return the rotation about a coordinate axis by an angle.
-
-    Book: (2.21)
-
-    Parameters
-    ----------
-    axis : {AXES}
-    theta : (...), radians
-    check : bool
-        False skips the look for nan and infinity.
-
-    Returns
-    -------
-    R : (..., 3, 3), rotation
-
-    Raises
-    ------
-    ValueError
-        If the axis has another name or theta is not finite.
-    """
-    if axis not in AXES:
-        checks.fail("so3.rotation", "axis", "one of x, y, z", repr(axis), None)
-    theta = checks.array("so3.rotation", "theta", theta, (), check)
-    i = AXES.index(axis)
-    j, k = (i + 1) % 3, (i + 2) % 3
-    R = np.zeros((*theta.shape, 3, 3))
-    R[..., i, i] = 1.0
-    R[..., j, j] = R[..., k, k] = np.cos(theta)
-    R[..., k, j] = np.sin(theta)
-    R[..., j, k] = 0.0 - R[..., k, j]
-    return R
