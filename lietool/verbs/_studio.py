@@ -1,0 +1,246 @@
+"""Where the verbs get pictures from: every plate with its place, the renderer, and what is to be recorded."""
+
+import contextlib
+import json
+import os
+import subprocess
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import cached_property
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from lietool import figure as figure_
+from lietool import paths
+from lietool.figure import Figure, Plate
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from lietool.golden.store import Place
+
+
+class Stop(click.ClickException):
+    """The end of a verb, with one line of why and its exit code."""
+
+    def __init__(self, code: int, message: str) -> None:
+        super().__init__(message)
+        # Click declares it for the class, and reads it from the instance.
+        vars(self)["exit_code"] = code
+
+
+@dataclass(frozen=True)
+class Item:
+    """A plate, its figure, and the place of its golden; loaded once it is looked at."""
+
+    id: str
+    command: str
+
+    @cached_property
+    def figure(self) -> Figure:
+        """The figure with its code."""
+        return figure_.load(self.command)
+
+    @cached_property
+    def declared(self) -> Figure:
+        """The figure as far as its signature goes, without what draws it."""
+        return figure_.declare(self.command)
+
+    @property
+    def plate(self) -> Plate:
+        """Title, caption and all that the figure says of this plate."""
+        return self.declared.plates[self.id]
+
+    @cached_property
+    def place(self) -> "Place":
+        """Where the golden lies: beside the folder of figures that the plate comes from."""
+        from lietool.golden.store import Place
+
+        file, chapter = self.declared.file, self.declared.chapter
+        folder = file.parent.parent if chapter else file.parent
+        return Place(paths.GOLDEN if folder == paths.FIGURES else folder.parent / "golden", chapter, self.id)
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The plate's parameters."""
+        return self.declared.plate_params(self.id)
+
+    @property
+    def recorded(self) -> str:
+        """The plate's parameters as a golden records them."""
+        values = {
+            key: value.as_posix() if isinstance(value, Path) else value
+            for key, value in self.parameters.items()
+        }
+        return json.dumps(values, ensure_ascii=False)
+
+
+def items(wanted: Sequence[str] = ()) -> list[Item]:
+    """List the plates, all or those that are named.
+
+    Parameters
+    ----------
+    wanted : sequence of str
+        Ids in any case; a command stands for all its plates.
+
+    Returns
+    -------
+    list of Item
+        In the order of chapters and numbers, each once.
+
+    Raises
+    ------
+    click.UsageError
+        If there is no such plate; the message has the nearest.
+    Stop
+        If a figure file is broken.
+    """
+    try:
+        known = figure_.plates()
+    except figure_.FigureError as error:
+        raise Stop(2, str(error)) from None
+    chosen = set()
+    for word in wanted:
+        found = [i for i in known if i == word] or [
+            i for i, command in known.items() if word.lower() in (i.lower(), command.lower())
+        ]
+        if not found:
+            hint = figure_.nearest(word, [*known, *known.values()])
+            raise click.UsageError(f"no plate {word!r}.{hint} See `lietool figures list`.")
+        chosen.update(found)
+    return [Item(i, command) for i, command in known.items() if i in chosen or not wanted]
+
+
+@dataclass(frozen=True, eq=False)
+class Painted:
+    """A plate as pixels (h, w, 3), its labels, and the bytes of those that the golden folder lacks."""
+
+    image: "np.ndarray"
+    numbers: Mapping[str, object]
+    label_keys: frozenset[str] = frozenset()
+    fresh: Mapping[str, bytes] = field(default_factory=dict)
+    missing_labels: tuple[str, ...] = ()
+
+
+class Studio:
+    """The renderer, as the verbs need it; a test puts another in its place as the context's object."""
+
+    @cached_property
+    def info(self) -> Mapping[str, Any]:
+        """What renders; raises NoRendererError."""
+        from lietool.render import context
+
+        return context.get().info
+
+    @cached_property
+    def trouble(self) -> str:
+        """Why pictures cannot be compared here; empty where they can."""
+        from lietool.render.context import NoRendererError
+
+        try:
+            info = self.info
+        except NoRendererError as error:
+            return str(error)
+        if info["canonical"]:
+            return ""
+        return (
+            f"the renderer is {info['renderer']!r} by {info['backend']}, not llvmpipe: goldens can be "
+            "neither made nor judged with it. `lietool doctor` says what to install."
+        )
+
+    def require(self) -> None:
+        """Stop with exit code 4 where nothing renders."""
+        from lietool.render.context import NoRendererError
+
+        try:
+            _ = self.info
+        except NoRendererError as error:
+            raise Stop(4, str(error)) from None
+
+    def sketch(self, item: Item) -> Painted:
+        """Compute what a plate shows, for which no renderer is needed; its picture is a blank."""
+        import numpy as np
+
+        drawing = item.figure.draw(**item.parameters)
+        return Painted(np.zeros((1, 1, 3), np.uint8), drawing.numbers)
+
+    def paint(self, item: Item, *, size: tuple[int, int] | None = None, draft: bool = False) -> Painted:
+        """Draw and render a plate, with labels from its golden folder alone where that has them."""
+        from lietool.render import draw, labels
+
+        drawing = item.figure.draw(**item.parameters)
+        store = labels.Store((item.place.labels,))
+        rendered = draw.render(drawing.picture, size=size, draft=draft, store=store)
+        return Painted(
+            rendered.image,
+            drawing.numbers,
+            frozenset(label.key for label in rendered.labels),
+            store.fresh,
+            tuple(dict.fromkeys(x.text for x in rendered.labels if f"{x.key}.png" in store.fresh)),
+        )
+
+
+def current() -> Studio:
+    """Return the studio of this invocation."""
+    return click.get_current_context().find_object(Studio) or Studio()
+
+
+def provenance(item: Item, info: Mapping[str, Any], reason: str) -> dict[str, str]:
+    """Collect what a golden remembers of how it was made.
+
+    Parameters
+    ----------
+    item : Item
+        The plate.
+    info : Mapping[str, object]
+        What renders, as the context tells it.
+    reason : str
+        Why it is accepted.
+
+    Returns
+    -------
+    dict
+        Keywords and texts.
+    """
+    versions = {name: metadata.version(name) for name in ("moderngl", "numpy", "matplotlib", "lietool")}
+    return {
+        "plate": item.id,
+        "command": item.command,
+        "parameters": item.recorded,
+        "reason": reason,
+        "date": _date(),
+        "commit": _commit(item.declared.file.parent),
+        "renderer": str(info["renderer"]),
+        "backend": str(info["backend"]),
+        "mesa": str(info.get("mesa") or "unknown"),
+        "llvm": str(info.get("llvm") or "unknown"),
+        **versions,
+    }
+
+
+@contextlib.contextmanager
+def writing(what: str) -> Iterator[None]:
+    """Turn an error of the disk into one line and exit code 2."""
+    try:
+        yield
+    except OSError as error:
+        raise Stop(2, f"{what} cannot be written: {error}") from None
+
+
+def _date() -> str:
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    now = datetime.fromtimestamp(int(epoch), UTC) if epoch.isdecimal() else datetime.now(UTC)
+    return now.strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def _commit(folder: Path) -> str:
+    command = ["git", "-C", str(folder), "describe", "--always", "--dirty", "--tags"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=20, check=True)
+    except (OSError, subprocess.SubprocessError):
+        return "unknown"
+    return done.stdout.strip() or "unknown"
