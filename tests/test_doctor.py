@@ -69,7 +69,7 @@ def test_other_pixels_are_told(monkeypatch):
 
 def test_one_way_is_enough(monkeypatch):
     result = outcome(monkeypatch, _CANONICAL, _NONE)
-    assert result.exit_code == 0 and "second way  none (lietool found nothing" in result.output
+    assert result.exit_code == 0 and "second way  none (egl: none)" in result.output
 
 
 def test_json_says_the_same(monkeypatch):

@@ -84,8 +84,7 @@ class Library:
         platform = _PLATFORM_SURFACELESS if device is None else _PLATFORM_DEVICE
         display = self._display(platform, device, None)
         if not display or not self.call.eglInitialize(display, None, None):
-            place = "no device" if device is None else "a device"
-            raise OSError(f"libEGL has no driver for a display on {place} ({self.error()})")
+            raise OSError(f"libEGL found no driver ({self.error()})")
         return display
 
     def error(self) -> str:
@@ -179,7 +178,9 @@ def load(software: bool) -> Loader:
             return loader
         loader.release()
         failures.append(f"EGL gave {renderer}")
-    raise OSError("; ".join(failures) or f"EGL knows no {'software' if software else 'GPU'} device")
+    raise OSError(
+        "; ".join(dict.fromkeys(failures)) or f"EGL knows no {'software' if software else 'GPU'} device"
+    )
 
 
 def _integers(*values: int) -> ctypes.Array[ctypes.c_int]:

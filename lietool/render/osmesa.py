@@ -49,17 +49,18 @@ def load(folders: Sequence[Path] | None = None, open_library: Open = ctypes.CDLL
     OSError
         If no copy can be loaded; the message says why the first one could not.
     """
+    folders = private_folders() if folders is None else folders
     failures: list[OSError] = []
     for name in NAMES:
         try:
             return open_library(name)
         except OSError as error:
             failures.append(error)
-    for folder in private_folders() if folders is None else folders:
+    for folder in folders:
         for path in (folder / name for name in NAMES):
             if path.is_file():
                 try:
-                    return _load_with_dependencies(path, folders or private_folders(), open_library)
+                    return _load_with_dependencies(path, folders, open_library)
                 except OSError as error:
                     failures.insert(0, error)
     raise failures[0]

@@ -179,7 +179,8 @@ def _renderer_rows(renderer: dict[str, Any]) -> list[tuple[str, str]]:
 def _second_way(found: dict[str, Any]) -> str:
     other = found["other"]
     if "error" in other:
-        return f"none ({other['error']})"
+        reasons = [f"{backend}: {reason}" for backend, reason in other.get("skipped", {}).items()]
+        return f"none ({'; '.join(reasons) or other['error']})"
     pixels = {True: "the same pixels", False: "OTHER PIXELS", None: "nothing to compare with"}
     return f"{other['backend']}: {other['renderer']}, {pixels[found['same_pixels']]}"
 
