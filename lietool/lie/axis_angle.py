@@ -34,7 +34,7 @@ def from_axis_angle(u: ArrayLike, theta: ArrayLike, *, check: bool = True) -> ND
     u = checks.unit("so3.from_axis_angle", "u", u, 3, check)
     theta = checks.array("so3.from_axis_angle", "theta", theta, (), check)
     checks.broadcast("so3.from_axis_angle", u=(u, 1), theta=(theta, 0))
-    return blocks.run(kernels.rodrigues, (3, 3), (theta[..., None] * u, 1))
+    return blocks.run(kernels.rotation_exp, (3, 3), (theta[..., None] * u, 1))
 
 
 def to_axis_angle(R: ArrayLike, *, check: bool = True) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

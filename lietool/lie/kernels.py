@@ -12,10 +12,45 @@ from lietool.lie.blocks import Rows
 Array = NDArray[np.float64]
 
 
-def rodrigues(x: Array) -> Rows:
-    """Return I + a X + b X^2 for the vector x, (7.4), by X^2 = x x^T - |x|^2 I."""
+def matrix(q: Rows) -> Rows:
+    """Return the matrix of p -> q p q^-1, (2.28), for any q but 0."""
+    w, x, y, z = q
+    s = 2.0 / (w * w + x * x + y * y + z * z)
+    sx, sy, sz = s * x, s * y, s * z
+    wx, wy, wz, xx, yy, zz, xy, xz, yz = (
+        w * sx,
+        w * sy,
+        w * sz,
+        x * sx,
+        y * sy,
+        z * sz,
+        x * sy,
+        x * sz,
+        y * sz,
+    )
+    return (
+        *(1.0 - (yy + zz), xy - wz, xz + wy),
+        *(xy + wz, 1.0 - (xx + zz), yz - wx),
+        *(xz - wy, yz + wx, 1.0 - (xx + yy)),
+    )
+
+
+def rotation_exp(x: Array) -> Rows:
+    """Return the rotation about x by |x|, Rodrigues' formula (7.4).
+
+    It goes by way of the quaternion cos(theta/2) + sin(theta/2) u, whose norm
+    is divided out; so the rounding of |x| and of its sine and cosine cannot
+    stretch the result, which summing I + a X + b X^2 lets it do near pi.
+    """
     x, y, z = x
-    a, b = series.rodrigues(np.sqrt(x * x + y * y + z * z))
+    h = 0.5 * np.sqrt(x * x + y * y + z * z)
+    a = 0.5 * series.sinc(h)
+    return matrix((np.cos(h), a * x, a * y, a * z))
+
+
+def _second_order(vector: Array, a: Array | float, b: Array) -> Rows:
+    """Return I + a X + b X^2 for the vector x, by X^2 = x x^T - |x|^2 I."""
+    x, y, z = vector
     bx, by, bz = b * x, b * y, b * z
     ax, ay, az = a * x, a * y, a * z
     xx, yy, zz, xy, xz, yz = bx * x, by * y, bz * z, bx * y, bx * z, by * z
@@ -24,6 +59,18 @@ def rodrigues(x: Array) -> Rows:
         *(xy + az, 1.0 - (xx + zz), yz - ax),
         *(xz - ay, yz + ax, 1.0 - (xx + yy)),
     )
+
+
+def left_jacobian(x: Array) -> Rows:
+    """Return the matrix of (7.5)."""
+    theta = np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
+    return _second_order(x, series.versinc(theta), series.sine_defect(theta))
+
+
+def left_jacobian_inverse(x: Array) -> Rows:
+    """Return the matrix of (7.8)."""
+    theta = np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
+    return _second_order(x, -0.5, series.cotangent_defect(theta))
 
 
 def shepperd(R: Array) -> Rows:
@@ -66,26 +113,15 @@ def quaternion(R: Array) -> Rows:
     return f * w, f * x, f * y, f * z
 
 
-def matrix(q: Array) -> Rows:
-    """Return the matrix of p -> q p q^-1, (2.28), for any q but 0."""
-    w, x, y, z = q
-    s = 2.0 / (w * w + x * x + y * y + z * z)
-    sx, sy, sz = s * x, s * y, s * z
-    wx, wy, wz, xx, yy, zz, xy, xz, yz = (
-        w * sx,
-        w * sy,
-        w * sz,
-        x * sx,
-        y * sy,
-        z * sz,
-        x * sy,
-        x * sz,
-        y * sz,
-    )
+def product(q: Array, p: Array) -> Rows:
+    """Return Hamilton's product q p."""
+    a, b, c, d = q
+    w, x, y, z = p
     return (
-        *(1.0 - (yy + zz), xy - wz, xz + wy),
-        *(xy + wz, 1.0 - (xx + zz), yz - wx),
-        *(xz - wy, yz + wx, 1.0 - (xx + yy)),
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
     )
 
 

@@ -1,7 +1,4 @@
-"""Quaternions (w, x, y, z) with Hamilton's product, and the unit ones as rotations of space.
-
-Imaginary quaternions are written as vectors of R^3.
-"""
+"""Quaternions (w, x, y, z), Hamilton's product; the imaginary ones are vectors of R^3, the unit ones rotate it."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,8 +11,7 @@ Array = NDArray[np.float64]
 
 
 def _pair(where: str, q: ArrayLike, p: ArrayLike) -> tuple[Array, Array]:
-    a = checks.array(where, "q", q, (4,), check=False)
-    b = checks.array(where, "p", p, (4,), check=False)
+    a, b = (checks.array(where, name, x, (4,), check=False) for name, x in (("q", q), ("p", p)))
     checks.broadcast(where, q=(a, 1), p=(b, 1))
     return a, b
 
@@ -35,7 +31,7 @@ def multiply(q: ArrayLike, p: ArrayLike) -> Array:
     qp : (..., 4)
     """
     a, b = _pair("quaternion.multiply", q, p)
-    return np.einsum("...ij,...j->...i", left_matrix(a), b)
+    return blocks.run(kernels.product, (4,), (a, 1), (b, 1))
 
 
 def left_matrix(q: ArrayLike) -> Array:

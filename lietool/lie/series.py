@@ -72,28 +72,6 @@ def versinc(t: ArrayLike) -> NDArray[np.float64]:
     return 0.5 * half * half
 
 
-def rodrigues(t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return both coefficients of Rodrigues' formula, `sinc` and `versinc`, from one sine and one cosine.
-
-    Book: (7.4)
-
-    Parameters
-    ----------
-    t : (...), radians
-        Any angle.
-
-    Returns
-    -------
-    a : (...)
-        (sin t) / t.
-    b : (...)
-        (1 - cos t) / t^2.
-    """
-    h = 0.5 * np.asarray(t, dtype=np.float64)
-    half = sinc(h)
-    return half * np.cos(h), 0.5 * half * half
-
-
 def sine_defect(t: ArrayLike) -> NDArray[np.float64]:
     """Divide what the sine lacks by the cube of the angle: (t - sin t) / t^3, and 1/6 at 0.
 

@@ -71,7 +71,7 @@ def exp(x: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
         If x is not finite.
     """
     x = checks.array("so3.exp", "x", x, (3,), check)
-    return blocks.run(kernels.rodrigues, (3, 3), (x, 1))
+    return blocks.run(kernels.rotation_exp, (3, 3), (x, 1))
 
 
 def log(R: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
@@ -208,13 +208,6 @@ def adjoint(R: ArrayLike) -> NDArray[np.float64]:
     return checks.array("so3.adjoint", "R", R, (3, 3), check=False).copy()
 
 
-def _second_order(
-    x: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    X = hat(x)
-    return np.eye(3) + a[..., None, None] * X + b[..., None, None] * (X @ X)
-
-
 def left_jacobian(x: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
     """Return the matrix from the rate of x to the angular velocity of exp(x), in fixed axes.
 
@@ -237,8 +230,7 @@ def left_jacobian(x: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
         If x is not finite.
     """
     x = checks.array("so3.left_jacobian", "x", x, (3,), check)
-    theta = np.linalg.norm(x, axis=-1)
-    return _second_order(x, series.versinc(theta), series.sine_defect(theta))
+    return blocks.run(kernels.left_jacobian, (3, 3), (x, 1))
 
 
 def left_jacobian_inverse(x: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
@@ -263,10 +255,10 @@ def left_jacobian_inverse(x: ArrayLike, *, check: bool = True) -> NDArray[np.flo
     """
     where = "so3.left_jacobian_inverse"
     x = checks.array(where, "x", x, (3,), check)
-    theta = np.linalg.norm(x, axis=-1)
     if check:
+        theta = np.linalg.norm(x, axis=-1)
         singular = series.at_pole(theta)
         if np.any(singular):
             index = checks.first(singular)
             checks.fail(where, "x", "not of length 2 pi n, n >= 1", f"length {theta[index]:.17g}", index)
-    return _second_order(x, np.full_like(theta, -0.5), series.cotangent_defect(theta))
+    return blocks.run(kernels.left_jacobian_inverse, (3, 3), (x, 1))
