@@ -233,5 +233,6 @@ def _refuse_contradictions(parameter: Parameter) -> None:
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return ``" Nearest: a, b."`` for a name that is not known, or nothing where none is near."""
     lowered = {item.lower(): item for item in known}
-    near = difflib.get_close_matches(name.lower(), lowered, 3, 0.5)
+    # In a short name one letter is a large part.
+    near = difflib.get_close_matches(name.lower(), lowered, 3, 0.6 if len(name) > 3 else 0.5)
     return f" Nearest: {', '.join(lowered[item] for item in near)}." if near else ""

@@ -1,0 +1,445 @@
+"""The command line, on a project of toy figures; by really starting it where the process matters."""
+
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import click
+import pytest
+from click.testing import CliRunner, Result
+from PIL import Image, ImageSequence
+
+import lietool
+from lietool import atomic, figure, paths
+from lietool.cli import command
+from lietool.render import context
+from lietool.verbs import _command, _picture, bench
+
+_BALL = '''
+"""A ball on a circle."""
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+
+from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.render.scene import Picture, Points, View
+
+
+@figure(
+    plates={"T1": Plate("Ball", ("1.1", "1.2"), "Red."), "T1b": Plate("Blue", (), "Blue.", {"hue": "blue"})},
+    time=Time("turn", 0, 360, frames=8, seconds=0.8, closed=True),
+)
+def ball(
+    hue: Annotated[Literal["red", "blue"], Param("its colour")] = "red",
+    q0: Annotated[tuple[float, float, float, float], Param("start (w, x, y, z)")] = (1.0, 0.0, 0.0, 0.0),
+    turn: Annotated[float, Param("swept angle", "deg", 0, 360)] = 90.0,
+    shaded: Annotated[bool, Param("light it")] = True,
+    dent: Annotated[int, Param("what goes wrong", low=0)] = 0,
+    mesh: Annotated[Path | None, Param("a mesh of your own")] = None,
+) -> Drawing:
+    """A ball on a circle.
+
+    What to look for: where it is.
+    """
+    if not any(q0):
+        raise ValueError("quaternion.normalize: q must be different from zero; got 0.")
+    if dent:
+        raise [KeyError("a bug"), KeyboardInterrupt(), OSError(2, "No such file", "x.obj")][dent - 1]
+    angle = np.radians(turn)
+    place = np.array([[32 + 16 * np.cos(angle), 24 + 16 * np.sin(angle), 0]])
+    record = Points(place, {"red": "#c8372d", "blue": "#2b66b1"}[hue], radius=6, shaded=shaded)
+    return Drawing(Picture((View((record,)),), (64, 48)), {"place": place, "hue": hue})
+'''
+_STILL = '''
+from lietool.figure import Drawing, Plate, figure
+from lietool.render.scene import Picture
+
+
+@figure(plates={"S1": Plate("Paper", (), "Paper.")})
+def still() -> Drawing:
+    """Nothing but paper."""
+    return Drawing(Picture((), (64, 48)), {})
+'''
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder to work in, with a project of toy figures and none of ours."""
+    chapter = tmp_path / "project/figures/ch9"
+    chapter.mkdir(parents=True)
+    (chapter / "ball.py").write_text(_BALL)
+    (chapter / "still.py").write_text(_STILL)
+    monkeypatch.setenv(figure.PROJECT, str(tmp_path / "project"))
+    monkeypatch.setattr(paths, "FIGURES", tmp_path / "none")
+    work = tmp_path / "work"
+    work.mkdir()
+    monkeypatch.chdir(work)
+    return work
+
+
+def _run(*arguments: str) -> Result:
+    result = CliRunner().invoke(command, arguments)
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    return result
+
+
+def _start(*arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "lietool", *arguments],
+        capture_output=True,
+        text=True,
+        env=os.environ | variables,
+        timeout=60,
+    )
+
+
+def _refused(result: Result) -> str:
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.count("\n") == 1, result.stderr
+    return result.stderr.strip()
+
+
+def test_bare_it_says_what_to_try(folder: Path) -> None:
+    result = _run()
+    assert result.exit_code == 0
+    tried = [line.split()[1] for line in result.stdout.splitlines()[1:]]
+    assert tried == ["slerp", "slerp", "figures"]
+
+
+def test_help_lists_figures_by_chapter_and_verbs(folder: Path) -> None:
+    result = _run("--help")
+    assert result.exit_code == 0
+    assert "Chapter 9:\n  ball   A ball on a circle.\n  still  Nothing but paper." in result.stdout
+    assert "  doctor " in result.stdout
+    assert "  _command" not in result.stdout
+
+
+def test_a_broken_file_is_one_line_of_help_and_of_its_command(folder: Path) -> None:
+    file = folder.parent / "project/figures/ch9/torn.py"
+    file.write_text("def torn(:\n")
+    result = _run("--help")
+    assert result.exit_code == 0
+    assert "torn   broken: " in result.stdout
+    assert "A ball on a circle" in result.stdout
+    assert _refused(_run("torn")) == f"lietool: {file}: line 1: invalid syntax"
+    assert _run("ball", "--json").exit_code == 0
+
+
+def test_help_of_a_figure_says_all(folder: Path) -> None:
+    text = " ".join(_run("ball", "--help").stdout.split())
+    for words in (
+        "A ball on a circle. What to look for: where it is.",
+        "--hue red|blue its colour [default red]",
+        "--q0 W,X,Y,Z start (w, x, y, z) [default 1,0,0,0]",
+        "--turn NUMBER swept angle [0 to 360 deg; default 90]",
+        "--shaded / --no-shaded light it [default --shaded]",
+        "--dent N what goes wrong [at least 0; default 0]",
+        "--mesh FILE a mesh of your own",
+        "Plates: T1 Ball (1.1, 1.2) T1b Blue",
+        "[default ./ball.png]",
+    ):
+        assert words in text
+    for option in figure.RESERVED:
+        assert f"--{option} " in text
+
+
+def test_the_common_options_are_the_reserved_names(folder: Path) -> None:
+    made = _command.command(figure.load("still"))
+    names = {name for option in made.get_params(click.Context(made)) for name in option.opts}
+    assert names == {"-o", *(f"--{name}" for name in figure.RESERVED)}
+
+
+def test_backends_are_those_of_the_renderer() -> None:
+    assert _command.BACKENDS == context.BACKENDS
+
+
+def test_a_png_remembers_what_it_is(folder: Path) -> None:
+    result = _run("ball", "--draft")
+    assert (result.exit_code, result.stdout) == (0, "ball.png\n")
+    with Image.open(folder / "ball.png") as image:
+        assert image.size == (64, 48)
+        text = dict(image.info)
+        # 90 degrees: above the middle, and red.
+        red, green, _ = image.convert("RGB").getpixel((32, 8))  # type: ignore[misc]
+    assert red > 150 > green
+    assert text["Software"] == f"lietool {lietool.__version__}"
+    assert (text["command"], text["plate"]) == ("ball", "T1")
+    assert json.loads(text["parameters"])["q0"] == [1.0, 0.0, 0.0, 0.0]
+    assert text["renderer"] == context.get().info["renderer"]
+
+
+def test_a_plate_is_a_start_and_options_win(folder: Path) -> None:
+    def hue(*arguments: str) -> str:
+        return json.loads(_run("ball", "--json", *arguments).stdout)["hue"]
+
+    assert hue() == "red"
+    assert hue("--plate", "T1b") == "blue"
+    assert hue("--plate", "t1B") == "blue"
+    assert hue("--plate", "T1b", "--hue", "red") == "red"
+    assert hue("--hue", "red", "--plate", "T1b") == "red"
+    _run("ball", "--draft", "--plate", "T1b", "--turn", "3", "-o", "a.png")
+    with Image.open(folder / "a.png") as image:
+        assert "plate" not in image.info
+
+
+def test_json_alone_writes_nothing_and_with_output_both(folder: Path) -> None:
+    result = _run("ball", "--json", "--turn", "0")
+    assert json.loads(result.stdout)["place"]["data"] == [48.0, 24.0, 0.0]
+    assert list(folder.iterdir()) == []
+    result = _run("ball", "--json", "--draft", "-o", "a.png")
+    assert json.loads(result.stdout)["hue"] == "red"
+    assert result.stderr == "a.png\n"
+    assert (folder / "a.png").is_file()
+
+
+def test_size_and_upper_case_ending(folder: Path) -> None:
+    assert _run("still", "--size", "80X40", "--draft", "-o", "a.PNG").exit_code == 0
+    with Image.open(folder / "a.PNG") as image:
+        assert image.size == (80, 40)
+
+
+def test_values_that_begin_with_a_minus(folder: Path) -> None:
+    assert _run("ball", "--json", "--q0", "-1,0,0,-.5").exit_code == 0
+    assert _run("ball", "--json", "--q0=-1,0,0,0").exit_code == 0
+    assert "got '-1'" in _refused(_run("ball", "--turn", "-1"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ("bal", ": no command 'bal'. Nearest: ball. lietool --help lists all"),
+        ("T1b", ": T1b is a plate. Write lietool ball --plate T1b"),
+        ("--projct x", ": no option '--projct'. Nearest: --project."),
+        ("ball --trn 3", " ball: no option '--trn'. Nearest: --turn."),
+        ("ball --plate T2", " ball: --plate must be one of T1, T1b; got 'T2'. Nearest: T1."),
+        ("ball --plate S1", " ball: plate S1 belongs to another command. Write lietool still --plate S1"),
+        ("ball --hue bleu", " ball: --hue must be one of red, blue; got 'bleu'. Nearest: blue."),
+        (
+            "ball --q0 1,0,0",
+            " ball: --q0 must be four finite numbers w,x,y,z; got '1,0,0'. Write for example --q0 1,0,0,0",
+        ),
+        (
+            "ball --turn nan",
+            " ball: --turn must be a finite number, 0 to 360 deg; got 'nan'. Write for example --turn 90",
+        ),
+        ("ball --q0 0,0,0,0", " ball: quaternion.normalize: q must be different from zero; got 0."),
+        ("ball --mesh x.obj", " ball: --mesh must be a file that exists; got 'x.obj'."),
+        ("ball --dent 3", " ball: No such file: x.obj"),
+        ("ball 3", " ball: Got unexpected extra argument (3). See lietool ball --help"),
+        ("ball --turn", " ball: Option '--turn' requires an argument."),
+        (
+            "ball --size 0x3",
+            " ball: --size must be width x height in pixels; got '0x3'. Write for example --size 1200x900",
+        ),
+        ("ball -o a.pdf", " ball: --output must end in .png or .gif; got 'a.pdf'"),
+        ("ball -o no/a.png", " ball: --output no/a.png: there is no folder no. Make it first"),
+        ("still -o a.gif", " still: still has no time to animate. Write a .png"),
+        (
+            "ball -o a.gif --turn 3",
+            " ball: a .gif sweeps --turn, so it cannot be given too. Leave out --turn, or write a .png",
+        ),
+    ],
+)
+def test_a_mistake_is_one_line(folder: Path, arguments: str, line: str) -> None:
+    assert _refused(_run(*arguments.split())) == "lietool" + line
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "-inf", "1e400", "360.0001", "", "ninety", "1,2"])
+def test_numbers_that_are_none_are_refused(folder: Path, value: str) -> None:
+    assert f"--turn must be a finite number, 0 to 360 deg; got {value!r}" in _refused(
+        _run("ball", "--turn", value)
+    )
+
+
+def test_an_output_that_is_a_folder(folder: Path) -> None:
+    (folder / "a.png").mkdir()
+    assert "a.png is a folder" in _refused(_run("ball", "-o", "a.png"))
+
+
+def test_a_folder_that_is_not_writable(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    assert f"the folder {folder} is not writable" in _refused(_run("ball", "-o", "a.png"))
+
+
+def test_a_full_disk(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(atomic, "write_bytes", full)
+    line = _refused(_run("still", "--draft"))
+    assert line.startswith("lietool still: cannot write still.png: No space left on device. Choose another")
+
+
+def test_nothing_to_render_with(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def none(*_: object) -> None:
+        raise context.NoRendererError({"osmesa": "not there"})
+
+    monkeypatch.setattr(context, "get", none)
+    result = _run("still")
+    assert (result.exit_code, result.stdout) == (4, "")
+    assert "osmesa: not there" in result.stderr
+    assert _run("still", "--json").exit_code == 0
+
+
+def test_two_files_of_one_name(folder: Path) -> None:
+    other = folder.parent / "project/figures/ch8"
+    other.mkdir()
+    (other / "still.py").write_text(_STILL)
+    assert "two files make the command still" in _refused(_run("--help"))
+
+
+def test_a_project_that_is_none(folder: Path) -> None:
+    line = _refused(_run("--project", "nowhere", "still"))
+    assert line.startswith("lietool: project nowhere must be a folder with a folder figures/ in it")
+
+
+def test_a_gif_goes_round_without_flicker(folder: Path) -> None:
+    assert _run("ball", "--draft", "-o", "a.gif").stdout == "a.gif\n"
+    with Image.open(folder / "a.gif") as image:
+        assert image.info["loop"] == 0
+        frames = [frame.convert("RGB") for frame in ImageSequence.Iterator(image)]
+    assert len(frames) == 8
+    # The paper stays paper, and the ball is where its angle says.
+    assert {frame.getpixel((1, 1)) for frame in frames} == {(255, 255, 255)}
+    assert frames[0].getpixel((48, 24)) == frames[4].getpixel((16, 24)) != (255, 255, 255)
+    assert frames[0].getpixel((16, 24)) == (255, 255, 255)
+
+
+def test_a_sweep_that_is_not_closed_goes_forth_and_back() -> None:
+    places = _picture.sweep(figure.Time("t", 1.0, 3.0, frames=6))
+    assert places[0] == 1.0
+    assert max(places) == places[3] == 3.0
+    assert places[1:3] == places[:3:-1]
+    closed = _picture.sweep(figure.Time("t", 0.0, 360.0, frames=4, closed=True))
+    assert closed == [0.0, 90.0, 180.0, 270.0]
+
+
+def test_an_interruption_ends_with_130(folder: Path) -> None:
+    result = _run("ball", "--dent", "2", "--json")
+    assert (result.exit_code, result.stdout) == (130, "")
+
+
+def test_a_bug_is_one_line_and_its_traceback_can_be_had(folder: Path) -> None:
+    result = _start("ball", "--dent", "1", "--json")
+    assert (result.returncode, result.stdout) == (1, "")
+    assert result.stderr.count("\n") == 1
+    assert result.stderr.startswith("lietool ball --dent 1 --json: KeyError: 'a bug' (ball.py, line ")
+    assert "LIETOOL_TRACEBACK=1" in result.stderr
+    result = _start("ball", "--dent", "1", "--json", LIETOOL_TRACEBACK="1")
+    assert result.returncode == 1
+    assert "Traceback" in result.stderr
+    result = _start("ball", "--q0", "0,0,0,0", "--json", LIETOOL_TRACEBACK="1")
+    assert result.returncode == 2
+    assert "Traceback" in result.stderr
+
+
+def test_a_reader_who_leaves_is_no_error(folder: Path) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    call = [sys.executable, "-m", "lietool", "ball", "--json"]
+    result = subprocess.run(call, stdout=writing, stderr=subprocess.PIPE, text=True, timeout=60)
+    os.close(writing)
+    assert (result.returncode, result.stderr) == (141, "")
+
+
+def test_ctrl_c_in_the_middle(folder: Path) -> None:
+    file = folder.parent / "project/figures/ch9/slow.py"
+    slow = _STILL.replace("def still", "def slow").replace('"S1"', '"S2"')
+    file.write_text(
+        slow.replace(
+            "    return", "    import time\n    print('started', flush=True)\n    time.sleep(60)\n    return"
+        )
+    )
+    call = [sys.executable, "-m", "lietool", "slow"]
+    with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "started\n"
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert errors.strip() == ""
+    assert list(folder.iterdir()) == []
+
+
+def test_help_and_completion_import_no_numpy_and_no_figure(folder: Path) -> None:
+    (folder.parent / "project/figures/ch9/ball.py").write_text(
+        _BALL.replace('"""A ball', 'import sys\nsys.exit(99)\n"""', 1)
+    )
+    code = (
+        "import sys; from lietool.cli import command\n"
+        "try: command.main(sys.argv[1:])\n"
+        "except SystemExit as stop: assert not stop.code, stop.code\n"
+        "loaded = {'numpy', 'rich', 'matplotlib', 'moderngl', 'PIL'} & sys.modules.keys()\n"
+        "assert not loaded, loaded\n"
+    )
+    for variables in (
+        {},
+        {"_LIETOOL_COMPLETE": "bash_complete", "COMP_WORDS": "lietool b", "COMP_CWORD": "1"},
+    ):
+        arguments = [] if variables else ["--help"]
+        call = [sys.executable, "-c", code, *arguments]
+        result = subprocess.run(call, capture_output=True, text=True, env=os.environ | variables, timeout=60)
+        assert (result.returncode, result.stderr) == (0, "")
+        assert "ball" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [
+        ("lietool st", ["still"]),
+        ("lietool fig", ["figures"]),
+        ("lietool ball --plate ", ["T1", "T1b"]),
+        ("lietool ball --hue b", ["blue"]),
+        ("lietool ball --tu", ["--turn"]),
+        ("lietool ball --backend e", ["egl"]),
+    ],
+)
+def test_completion(folder: Path, monkeypatch: pytest.MonkeyPatch, words: str, found: list[str]) -> None:
+    monkeypatch.setenv("_LIETOOL_COMPLETE", "bash_complete")
+    monkeypatch.setenv("COMP_WORDS", words)
+    monkeypatch.setenv("COMP_CWORD", str(len(words.split(" ")) - 1))
+    result = _run()
+    assert result.exit_code == 0
+    assert [line.partition(",")[2] for line in result.stdout.split()] == found
+
+
+def test_the_script_for_the_shell(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("_LIETOOL_COMPLETE", "zsh_source")
+    assert "#compdef lietool" in _run().stdout
+
+
+def test_version_and_module(folder: Path) -> None:
+    assert _start("--version").stdout == f"lietool, version {lietool.__version__}\n"
+
+
+def test_the_benchmark_tells_what_it_measured(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = {
+        "seconds": {"import numpy": 0.1, "lietool --help": 0.2, "lietool slerp": 0.5},
+        "plates": {"T1": 0.39},
+        "megabytes": {"once": 200.0, "three times": 201.0},
+        "backend": "osmesa",
+        "cpus": 2,
+        "runs": 3,
+    }
+    monkeypatch.setattr(bench, "measure", lambda runs: found | {"runs": runs})
+    assert json.loads(_run("bench", "startup", "--runs", "5", "--json").stdout) == found | {"runs": 5}
+    rows = [line.split() for line in _run("bench", "startup").stdout.splitlines()]
+    assert rows[0][:4] == ["Median", "of", "10", "runs"]
+    assert ["lietool", "--help", "0.200", "s", "<", "0.130", "s", "missed"] in rows
+    assert ["plate", "T1", "0.390", "s", "<", "0.400", "s", "met"] in rows
+
+
+def test_the_benchmark_draws_every_plate(folder: Path) -> None:
+    result = _run("bench", "work")
+    assert result.exit_code == 0
+    found = json.loads(result.stdout)
+    assert found["plates"].keys() == {"T1", "T1b", "S1"}
+    assert found["megabytes"]["three times"] >= found["megabytes"]["once"] > 0
+    assert "work" not in _run("bench", "--help").stdout
