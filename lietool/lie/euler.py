@@ -134,8 +134,8 @@ def from_matrix(R: ArrayLike, convention: str, *, check: bool = True) -> Array:
     # The quaternion is (cos t2/2 (cos s, sin s), sin t2/2 (cos r, sin r)), s = (t3 + t1)/2, r = (t3 - t1)/2.
     sine, cosine = np.hypot(c, d), np.hypot(a, b)
     s, r = np.arctan2(b, a), np.arctan2(d, c)
-    r = np.where(sine <= series.ROUNDED, -s, r)
-    s = np.where(cosine <= series.ROUNDED, -r, s)
+    r = np.where(sine <= series.LOCKED, -s, r)
+    s = np.where(cosine <= series.LOCKED, -r, s)
     t1, t3 = _wrap(s - r), _wrap(s + r)
     if k == i:
         t2 = 2.0 * np.arctan2(sine, cosine)

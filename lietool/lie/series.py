@@ -10,8 +10,13 @@ from math import factorial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-ROUNDED = 4 * np.finfo(np.float64).eps
-"""Radians. In a rotation whose entries have been rounded, a smaller angle cannot be told from 0."""
+_EPS = float(np.finfo(np.float64).eps)
+
+ROUNDED = 16 * _EPS
+"""Radians. The product of a few rotations that should be the identity differs from it by less than this."""
+
+LOCKED = 2 * _EPS
+"""The rounding of the small components of a quaternion read from a matrix: below it they say nothing."""
 
 _TINY = 1e-300  # stands in for an exact 0: sin and atan2 return it unchanged, so the quotient is the limit
 
@@ -160,4 +165,4 @@ def at_pole(t: ArrayLike) -> NDArray[np.bool_]:
     pole : (...)
     """
     t = np.abs(np.asarray(t, dtype=np.float64))
-    return (t > 1.0) & (np.abs(np.sin(0.5 * t)) <= 0.25 * ROUNDED * np.maximum(t, 1.0))
+    return (t > 1.0) & (np.abs(np.sin(0.5 * t)) <= _EPS * t)
