@@ -115,8 +115,9 @@ def verify(context: click.Context, ids: tuple[str, ...], folder: Path, as_json: 
 def accept(ids: tuple[str, ...], reason: str | None, everything: bool) -> None:
     """Make new goldens, and say what changed.
 
-    Look at the pictures first: what the plates show now is what they are held to.  Plates that have not changed at all are left
-    alone.  Refused (4) where the renderer is not canonical.
+    Look at the pictures first: what the plates show now is what they are held
+    to from now on.  Plates that have not changed at all are left alone.
+    Refused (4) where the renderer is not canonical.
     """
     from lietool.verbs import _figures_accept
 
