@@ -1,4 +1,4 @@
-"""Quaternions (w, x, y, z), Hamilton's product; the imaginary ones are vectors of R^3, the unit ones rotate it."""
+"""Quaternions (w, x, y, z), Hamilton's product; imaginary ones are vectors of R^3, unit ones rotate it."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray

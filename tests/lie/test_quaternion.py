@@ -52,8 +52,8 @@ def test_conjugate_norm_and_inverse():
 @pytest.mark.parametrize("scale", [1e-149, 1e-100, 1.0, 1e149])
 def test_norm_neither_overflows_nor_vanishes(scale):
     q = scale * np.array([1.0, 2.0, -2.0, 4.0])
-    assert quaternion.norm(q) == pytest.approx(5 * scale, rel=1e-15)
-    assert quaternion.normalize(q) == pytest.approx(np.array([0.2, 0.4, -0.4, 0.8]), rel=1e-15)
+    assert quaternion.norm(q) == pytest.approx(5 * scale, rel=1e-15, abs=0)
+    assert quaternion.normalize(q) == pytest.approx(np.array([0.2, 0.4, -0.4, 0.8]), rel=1e-15, abs=0)
     assert quaternion.norm(np.zeros(4)) == 0
 
 
@@ -155,6 +155,18 @@ def test_slerp_of_nearly_opposite_points_stays_on_the_sphere_at_even_speed():
         path = quaternion.slerp(ONE, q1, t)
         np.testing.assert_allclose(quaternion.norm(path), 1, atol=1e-15)
         np.testing.assert_allclose(path[:, 0], np.cos(t * np.linalg.norm(quaternion.log(q1))), atol=1e-15)
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-8])
+def test_slerp_of_nearly_opposite_points_keeps_the_plane_of_the_arc(gap):
+    rng = np.random.default_rng(16)
+    q0 = units(10, 17)
+    q1 = quaternion.normalize(-q0 + gap * rng.normal(size=q0.shape))
+    value = quaternion.slerp(q0, q1, 0.4)
+    with mpmath.workdps(60):
+        for a, b, v in zip(q0, q1, value, strict=True):
+            exact = printed_slerp(a, b, 0.4)
+            assert max(abs(mpmath.mpf(float(c)) - e) for c, e in zip(v, exact, strict=True)) <= 2e-15
 
 
 def test_slerp_properties():
