@@ -1,0 +1,390 @@
+"""`lietool figures ...` on a toy project: each verb, each message, each exit code, by running it."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+from lietool import figure, paths
+from lietool.golden import store
+from lietool.verbs import _studio
+from lietool.verbs.figures import command
+
+FILE = '''
+"""Toy."""
+
+from typing import Annotated
+
+import numpy as np
+
+from lietool.figure import Drawing, Param, Plate, figure
+from lietool.render.scene import Label, Picture, View
+
+
+@figure(
+    plates={
+        "T1": Plate(title="Three dots", equations=("1.1", "1.2"), caption="Three."),
+        "T1b": Plate(title="Five dots", equations=(), caption="Five.", params={"count": 5}),
+    }
+)
+def dots(
+    count: Annotated[int, Param("how many", "", 1, 9)] = 3,
+    start: Annotated[tuple[float, float], Param("where (x, y)")] = (0.5, 0.25),
+) -> Drawing:
+    """Draw dots."""
+    view = View((Label(f"${count}$", (30.0, 20.0, 0.0), "#2b2f36", 20.0),))
+    return Drawing(Picture((view,), (60, 40)), {"count": count, "x": np.linspace(0.0, 1.0, count)})
+'''
+
+
+class Studio(_studio.Studio):
+    """A renderer that paints what a test wants it to."""
+
+    def __init__(self):
+        self.change = None
+        self.numbers = {}
+        self.keys, self.missing = {"k1"}, ("$q$",)
+        self.info = {"renderer": "llvmpipe (LLVM 15)", "backend": "osmesa", "mesa": "22.3.6", "llvm": "15"}
+        self.trouble = ""
+
+    def require(self):
+        if self.trouble == "nothing":
+            raise _studio.Stop(4, "no OpenGL renderer")
+
+    def paint(self, item, *, size=None, draft=False):
+        image = np.random.default_rng(len(item.id)).integers(0, 256, (40, 60, 3)).astype(np.uint8)
+        if self.change:
+            image = self.change(image)
+        fresh = {f"{k}.png": b"label" for k in self.keys if not (item.place.labels / f"{k}.png").exists()}
+        numbers = {**self.sketch(item).numbers, **self.numbers}
+        return _studio.Painted(image, numbers, frozenset(self.keys), fresh, self.missing if fresh else ())
+
+
+@pytest.fixture
+def studio():
+    return Studio()
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch, studio):
+    """Run the verb in a project of its own; the exit code is checked, the output returned."""
+    (tmp_path / "figures" / "ch9").mkdir(parents=True)
+    (tmp_path / "figures" / "ch9" / "dots.py").write_text(FILE)
+    (tmp_path / "ours").mkdir()
+    monkeypatch.setattr(paths, "FIGURES", tmp_path / "ours")
+    monkeypatch.setenv(figure.PROJECT, str(tmp_path))
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    monkeypatch.chdir(tmp_path)
+
+    def invoke(line, code=0, *, obj=studio):
+        words = [word.strip('"') for word in re.findall(r'"[^"]*"|\S+', line)]
+        result = CliRunner().invoke(command, words, obj=obj, catch_exceptions=False)
+        assert result.exit_code == code, result.output
+        return result.output
+
+    return invoke
+
+
+@pytest.fixture
+def accepted(run, tmp_path):
+    """A project whose goldens are whole: its golden folder."""
+    run('accept --all --reason "first look"')
+    return tmp_path / "golden"
+
+
+def files(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def texts(path, **changed):
+    """Change texts in a PNG, leaving its pixels."""
+    with Image.open(path) as image:
+        info = PngInfo()
+        for key, value in {**image.text, **changed}.items():  # type: ignore[attr-defined]
+            info.add_text(key, value)
+        image.save(path, pnginfo=info)
+
+
+def test_list_shows_plates_and_the_state_of_their_goldens(run, tmp_path):
+    rows = json.loads(run("list --json"))
+    assert [(row["plate"], row["command"], row["golden"]) for row in rows] == [
+        ("T1", "dots", "missing"),
+        ("T1b", "dots", "missing"),
+    ]
+    assert rows[0]["equations"] == ["1.1", "1.2"]
+    run("accept T1 --reason r")
+    assert run("list").splitlines()[1].split() == ["T1", "dots", "golden", "1.1,", "1.2", "Three", "dots"]
+    (tmp_path / "golden" / "ch9" / "T1.json").unlink()
+    assert "half accepted" in run("list T1")
+
+
+def test_show_says_what_a_plate_is_and_where_it_comes_from(run, accepted):
+    said = run("show t1B")
+    assert "Five dots" in said and "lietool dots --plate T1b" in said
+    assert re.search(r"dots\.py:\d+", said) and re.search(r"reason +first look", said)
+    about = json.loads(run("show T1 --json"))[0]
+    assert about["parameters"] == {"count": 3, "start": [0.5, 0.25]} and about["command"] == "lietool dots"
+    golden = about["golden"]
+    assert golden["date"] == "1970-01-02T00:00:00Z" and golden["renderer"].startswith("llvmpipe")
+    assert json.loads(golden["parameters"]) == about["parameters"]
+    assert {"plate", "command", "commit", "mesa", "llvm", "moderngl", "numpy", "matplotlib"} <= set(golden)
+
+
+def test_a_golden_that_is_missing_is_said_so_by_show(run):
+    assert "missing: there is no golden at" in run("show T1")
+
+
+@pytest.mark.parametrize("verb", ["list", "show", "build", "verify", "accept --reason r"])
+def test_an_unknown_plate_is_answered_with_the_nearest(run, verb):
+    said = run(f"{verb} T1c", 2)
+    assert "no plate 'T1c'. Nearest: T1" in said and not Path("golden").exists()
+
+
+def test_a_plate_is_found_in_any_case_and_a_command_stands_for_all_its_plates(run):
+    assert [row["plate"] for row in json.loads(run("list t1b --json"))] == ["T1b"]
+    assert [row["plate"] for row in json.loads(run("list DOTS t1 --json"))] == ["T1", "T1b"]
+
+
+def test_a_broken_figure_file_is_one_line(run, tmp_path):
+    (tmp_path / "figures" / "ch9" / "broken.py").write_text("def broken(:\n")
+    assert "broken.py: line 1" in run("list", 2)
+
+
+def test_build_makes_pictures_and_reports_without_judging(run, accepted, studio, tmp_path):
+    before = files(accepted)
+    said = run("build")
+    assert [line.split()[0] for line in said.splitlines()[:3]] == ["plate", "T1", "T1b"]
+    assert "equal" in said and "Try next:" in said and "\x1b" not in said
+    with Image.open(tmp_path / "out" / "T1.png") as image:
+        assert image.size == (60, 40) and image.info["plate"] == "T1"
+    studio.change = np.invert
+    rows = json.loads(run("build T1 -o elsewhere --json"))
+    assert [row["verdict"] for row in rows] == ["picture"] and Path(rows[0]["path"]).is_file()
+    assert "Not as accepted: T1. `lietool figures verify T1` says why." in run("build T1")
+    assert files(accepted) == before
+
+
+@pytest.mark.parametrize("option", ["--draft", "--size 30x20"])
+def test_a_draft_or_another_size_is_not_compared(run, accepted, option):
+    rows = json.loads(run(f"build {option} --json"))
+    assert {row["verdict"] for row in rows} == {"not compared"}
+
+
+@pytest.mark.parametrize("size", ["30", "0x20", "30x-1", "axb"])
+def test_a_size_that_is_none_is_refused(run, size):
+    assert "--size must be" in run(f"build --size {size}", 2)
+
+
+def test_build_on_another_renderer_is_not_compared_and_without_one_fails(run, accepted, studio):
+    studio.trouble = "the renderer is a GPU"
+    assert {row["verdict"] for row in json.loads(run("build --json"))} == {"not compared"}
+    studio.trouble = "nothing"
+    assert "no OpenGL renderer" in run("build", 4)
+
+
+@pytest.mark.parametrize("verb", ["build", "verify"])
+def test_an_output_folder_that_cannot_be_written_is_one_line(run, tmp_path, verb):
+    (tmp_path / "file").write_bytes(b"")
+    assert "cannot be written" in run(f"{verb} T1 -o file/out", 2)
+
+
+def test_verify_passes_what_was_accepted_and_writes_no_golden(run, accepted, studio):
+    before = files(accepted)
+    assert "2 plates: 2 as accepted, 0 not." in run("verify")
+    studio.change = lambda image: np.where(
+        image < 255, image + (np.indices((40, 60, 3)).sum(0) % 2), image
+    ).astype(np.uint8)
+    said = run("verify T1")
+    assert "passes  " in said and "0 of 8 beyond dE 2" in said
+    studio.change = np.invert
+    run("verify", 5)
+    assert files(accepted) == before and not (accepted.parent / "out" / "failed" / "T9.png").exists()
+
+
+def verdicts(run, code, line="verify --json"):
+    about = json.loads(run(line, code))
+    assert about["exit"] == code
+    found = [*about["findings"], *(f for plate in about["plates"] for f in plate["findings"])]
+    return {finding["kind"]: finding["message"] for finding in found}
+
+
+def test_a_missing_golden(run):
+    (message,) = verdicts(run, 3).values()
+    assert "there is no golden at" in message and 'lietool figures accept T1b --reason "..."' in message
+    assert Path("out/failed/T1-actual.png").exists() and not Path("out/failed/T1-expected.png").exists()
+
+
+def test_a_golden_without_a_plate(run, accepted):
+    (accepted / "ch9" / "T7.json").write_bytes(b"{}")
+    assert "T7.json belongs to no plate" in verdicts(run, 3)["unregistered"]
+    run("verify T1 T1b")
+
+
+def test_another_size(run, accepted, studio):
+    studio.change = lambda image: image[:30]
+    found = verdicts(run, 3)
+    assert set(found) == {"size"} and "the picture is 60x30, its golden 60x40" in found["size"]
+    assert not Path("out/failed/T1-difference.png").exists() and Path("out/failed/T1-expected.png").exists()
+
+
+@pytest.mark.parametrize("damage", [lambda data: data[:200], lambda data: b"", lambda data: b"x" + data])
+def test_a_torn_picture(run, accepted, damage):
+    path = accepted / "ch9" / "T1.png"
+    path.write_bytes(damage(path.read_bytes()))
+    found = verdicts(run, 3)
+    assert set(found) == {"torn"} and "cannot be decoded" in found["torn"] and "Restore it" in found["torn"]
+
+
+def test_half_accepted(run, accepted, studio):
+    path = accepted / "ch9" / "T1.json"
+    path.write_text(path.read_text().replace("3", "4", 1))
+    found = verdicts(run, 3)
+    assert set(found) == {"half accepted"} and found["half accepted"].startswith(
+        "half accepted, run accept again"
+    )
+    assert "T1: whole again, was half accepted" in run("accept T1 --reason again")
+    run("verify")
+
+
+def test_a_missing_label(run, accepted):
+    (accepted / "labels" / "k1.png").unlink()
+    found = verdicts(run, 3)
+    assert set(found) == {"label"} and "label '$q$' is not in" in found["label"]
+    assert "lietool figures accept T1b" in found["label"]
+    assert "labels (1 new)" in run("accept T1 --reason again")
+    run("verify")
+
+
+def test_other_parameters(run, accepted):
+    texts(accepted / "ch9" / "T1.png", parameters='{"count": 4, "start": [0.5, 0.25]}')
+    found = verdicts(run, 5)
+    assert "made with other parameters: count was 4, is 3" in found["parameters"]
+
+
+def test_a_golden_of_another_renderer(run, accepted):
+    texts(accepted / "ch9" / "T1.png", renderer="softpipe")
+    found = verdicts(run, 5)
+    assert set(found) == {"golden's renderer"} and "'softpipe', not by llvmpipe" in found["golden's renderer"]
+    assert "was made by 'softpipe'" in run("accept T1 --reason again")
+    run("verify")
+
+
+def test_another_picture_is_explained_and_left_until_it_passes_again(run, accepted, studio):
+    def changed(image):
+        image = image.copy()
+        image[5:20, 10:30] = 255 - image[5:20, 10:30]
+        return image
+
+    studio.change = changed
+    found = verdicts(run, 5)
+    assert set(found) == {"picture"} and "px beyond dE 2 (8 allowed)" in found["picture"]
+    said = run("verify T1", 5)
+    assert re.search(r"20x15 at \(10, 5\): \d+ px, dE", said) and "SSIM" in said
+    left = sorted(path.name for path in Path("out/failed").iterdir() if path.name.startswith("T1-"))
+    assert left == ["T1-actual.png", "T1-difference.png", "T1-expected.png"]
+    studio.change = None
+    run("verify")
+    assert list(Path("out/failed").iterdir()) == []
+
+
+def test_other_numbers(run, accepted, studio):
+    studio.numbers = {"x": np.array([0.0, 0.5, 1.0 + 1e-6])}
+    found = verdicts(run, 5, "verify T1 --json")
+    assert set(found) == {"numbers"} and "x[2]: expected 1.0, got 1.000001, off by 1e-06" in found["numbers"]
+    studio.numbers = {"x": np.array([0.0, 0.5, 1.0 + 1e-12])}
+    run("verify T1")
+
+
+def test_a_renderer_that_is_not_canonical_leaves_the_numbers_to_judge(run, accepted, studio):
+    studio.trouble = "the renderer is a GPU"
+    found = verdicts(run, 4)
+    assert found == {"renderer": "the renderer is a GPU"}
+    assert "pictures were not compared" in run("verify", 4)
+
+
+def test_with_several_it_is_4_before_3_before_5(run, accepted, studio):
+    studio.numbers = {"count": 8}
+    assert set(verdicts(run, 5)) == {"numbers"}
+    (accepted / "ch9" / "T1.png").unlink()
+    assert set(verdicts(run, 3)) == {"numbers", "half accepted"}
+    studio.trouble = "the renderer is a GPU"
+    assert set(verdicts(run, 4)) == {"renderer", "half accepted"}
+
+
+@pytest.mark.parametrize(
+    "line", ["accept T1", "accept --reason r", 'accept T1 --reason "  "', "accept T1 --all --reason r"]
+)
+def test_accept_needs_a_reason_and_plates(run, line):
+    assert "accept needs" in run(line, 2) and not Path("golden").exists()
+
+
+def test_accept_refuses_a_renderer_that_is_not_canonical(run, accepted, studio):
+    before = files(accepted)
+    studio.trouble, studio.change = "the renderer is a GPU", np.invert
+    assert "the renderer is a GPU" in run("accept --all --reason r", 4)
+    assert files(accepted) == before
+
+
+def test_accept_says_what_has_changed_and_leaves_the_rest_alone(run, accepted, studio):
+    before = files(accepted)
+    assert run('accept T1 --reason "again"') == "T1: unchanged, left as it is\n"
+    assert files(accepted) == before
+    studio.numbers = {"x": np.array([0.0, 0.5, 1.0 + 1e-15])}
+    assert "numbers: x[2]: expected 1.0, got 1.000000000000001" in run("accept T1 --reason finer")
+    studio.change = lambda image: image ^ np.uint8(1)
+    assert re.search(r"T1: 2400 px changed, \d+ beyond dE 2, largest ", run('accept T1 --reason "bit one"'))
+    assert store.provenance(store.Place(accepted, "ch9", "T1"))["reason"] == "bit one"
+    run("verify T1")
+    run("verify T1b", 5)
+
+
+def test_accept_keeps_no_numbers_that_are_not_finite(run, accepted, studio):
+    before = files(accepted)
+    studio.numbers = {"x": np.array([0.0, np.nan])}
+    assert "must be finite; got x[1] is nan" in run("accept T1 --reason r", 2)
+    assert files(accepted) == before
+
+
+def test_accept_removes_labels_that_no_golden_uses(run, accepted, studio):
+    studio.keys = {"k2"}
+    assert "removed" not in run("accept T1 --reason r")
+    assert "removed 1 labels that no golden uses: k1" in run("accept T1b --reason r")
+    assert [path.name for path in (accepted / "labels").iterdir()] == ["k2.png"]
+
+
+def test_accept_in_a_folder_that_cannot_be_written_is_one_line(run, tmp_path):
+    (tmp_path / "golden").write_bytes(b"")
+    assert "cannot be written" in run("accept T1 --reason r", 2)
+
+
+def test_the_commit_is_recorded_where_there_is_one(tmp_path):
+    assert _studio._commit(tmp_path / "nowhere") == "unknown"
+
+
+def test_the_whole_way_with_the_real_renderer(run, tmp_path):
+    """Accept, twice at once, in processes of their own; verify; find a label missing."""
+    environment = {**os.environ, "LIETOOL_CACHE_DIR": str(tmp_path / "cache")}
+    line = [sys.executable, "-m", "lietool", "figures", "accept", "dots", "--reason", "look"]
+    both = [
+        subprocess.Popen(line, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        for _ in "12"
+    ]
+    said = [process.communicate(timeout=120)[0].decode() for process in both]
+    assert [process.returncode for process in both] == [0, 0], said
+    # Whoever came second waited, and then found that nothing had changed.
+    assert sorted(text.count("T1: new") for text in said) == [0, 1]
+    found = store.read(store.Place(tmp_path / "golden", "ch9", "T1"))
+    labels = {path.stem for path in (tmp_path / "golden" / "labels").iterdir()}
+    assert store.label_keys(found.provenance) <= labels and len(labels) == 2
+    assert "2 as accepted" in run("verify", obj=None)
+    for path in (tmp_path / "golden" / "labels").iterdir():
+        path.unlink()
+    assert "label '$3$' is not in" in run("verify T1", 3, obj=None)
