@@ -66,13 +66,13 @@ class _Lietool(click.Group):
         summaries = figure.summaries()
         for name, file in figure.names().items():
             sections.setdefault(_title(file), []).append((name, summaries[name]))
-        sections["More"] = list(verbs().items())
+        sections["More"] = list(_help_lines().items())
         for title, rows in sections.items():
             with formatter.section(title):
                 formatter.write_dl(rows)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
-        rows = figure.summaries() | verbs()
+        rows = figure.summaries() | _help_lines()
         found = [
             CompletionItem(name, help=text) for name, text in rows.items() if name.startswith(incomplete)
         ]
@@ -128,13 +128,15 @@ class _Lietool(click.Group):
             return _say(str(error), 4)
 
 
-def verbs() -> dict[str, str]:
-    """Return the verbs and their help lines, from the files in ``lietool/verbs``."""
-    found = {}
-    for file in sorted((paths.PACKAGE / "verbs").glob("[a-z]*.py")):
-        text = ast.get_docstring(ast.parse(file.read_bytes())) or ""
-        found[file.stem] = text.partition("\n")[0]
-    return found
+def verbs() -> dict[str, Path]:
+    """Return the verbs and their files, those in ``lietool/verbs``."""
+    return {file.stem: file for file in sorted((paths.PACKAGE / "verbs").glob("[a-z]*.py"))}
+
+
+def _help_lines() -> dict[str, str]:
+    """The help line of every verb, from the syntax tree of its file."""
+    docstrings = {name: ast.get_docstring(ast.parse(file.read_bytes())) for name, file in verbs().items()}
+    return {name: (text or "").partition("\n")[0] for name, text in docstrings.items()}
 
 
 def _title(file: Path) -> str:

@@ -431,7 +431,7 @@ def test_the_benchmark_tells_what_it_measured(folder: Path, monkeypatch: pytest.
     monkeypatch.setattr(bench, "measure", lambda runs: found | {"runs": runs})
     assert json.loads(_run("bench", "startup", "--runs", "5", "--json").stdout) == found | {"runs": 5}
     rows = [line.split() for line in _run("bench", "startup").stdout.splitlines()]
-    assert rows[0][:4] == ["Median", "of", "10", "runs"]
+    assert rows[0][:4] == ["Median", "of", "10", "runs,"]
     assert ["lietool", "--help", "0.200", "s", "<", "0.130", "s", "missed"] in rows
     assert ["plate", "T1", "0.390", "s", "<", "0.400", "s", "met"] in rows
 
