@@ -100,12 +100,24 @@ def _(record: Surface, lens: Lens) -> list[Batch]:
     data = np.concatenate([corners, normals, color, material], axis=-1).astype("f4")
     depth = lens.depth(corners.mean(axis=1))
     if record.material == "glass":
-        # The far wall comes before everything and the near wall at the middle: what lies nearer is in front.
-        return [
-            Batch("glass far", data, np.full(len(data), lens.depth(vertices).max())),
-            Batch("glass near", data, np.full(len(data), depth.mean())),
-        ]
+        return _walls(data, corners, normals, depth, lens)
     return [Batch("surface", data, depth, bool(color[..., 3].min() >= 1.0))]
+
+
+def _walls(
+    data: np.ndarray, corners: np.ndarray, normals: np.ndarray, depth: np.ndarray, lens: Lens
+) -> list[Batch]:
+    """The far wall of a shell of glass before everything else, the near wall at its middle.
+
+    What lies nearer than the middle is taken to be in front of the glass.
+    """
+    eye = lens.camera.eye if isinstance(lens.camera, Camera) else np.array([0.0, 0.0, 1e9])
+    facing = np.sum(normals * (eye - corners), axis=-1)
+    far, near = data[(facing < 0.0).any(axis=1)], data[(facing > 0.0).any(axis=1)]
+    return [
+        Batch("glass far", far, np.full(len(far), depth.max())),
+        Batch("glass near", near, np.full(len(near), depth.mean())),
+    ]
 
 
 @batches.register

@@ -53,7 +53,7 @@ def compose(
     tuple of PlacedLabel
     """
     placed = []
-    page: Box = (0.0, 0.0, *map(float, picture.size))
+    page: Box = (0.0, 0.0, float(picture.size[0]), float(picture.size[1]))
     for view in picture.views:
         for record in view.records:
             if not isinstance(record, Label):
@@ -72,7 +72,9 @@ def _anchored(anchor: str, x: float, y: float, glyphs: labels.Glyphs) -> tuple[i
     right = {"l": 0.0, "c": width / 2.0, "r": float(width)}
     down = {"t": 0.0, "c": height / 2.0, "b": float(height), "n": float(height - glyphs.baseline)}
     if len(anchor) != 2 or anchor[0] not in right or anchor[1] not in down:
-        raise ValueError(f"Label.anchor must be one of l c r and one of t c b n, such as 'cb'; got {anchor!r}")
+        raise ValueError(
+            f"Label.anchor must be one of l c r and one of t c b n, such as 'cb'; got {anchor!r}"
+        )
     return round(x - right[anchor[0]]), round(y - down[anchor[1]])
 
 

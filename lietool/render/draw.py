@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
+from itertools import pairwise
 
 import moderngl
 import numpy as np
@@ -132,19 +133,27 @@ def _prepare(view: View, page: Box, unit: float) -> _Prepared:
 
 def _sorted_runs(rest: list[Batch], height: float) -> Iterator[tuple[str, np.ndarray]]:
     """Yield what can be drawn at once, far to near; on a page (height 0) in the order of the records."""
-    if not rest:
+    kinds = list(dict.fromkeys(batch.kind for batch in rest))
+    if not kinds:
         return
-    source = np.repeat(np.arange(len(rest)), [len(b.data) for b in rest])
-    element = np.concatenate([np.arange(len(b.data)) for b in rest])
-    order = np.arange(len(source))
+    rows = {kind: np.concatenate([b.data for b in rest if b.kind == kind]) for kind in kinds}
+    before = dict.fromkeys(kinds, 0)
+    kind_of, row_of = [], []
+    for batch in rest:
+        count = len(batch.data)
+        kind_of.append(np.full(count, kinds.index(batch.kind)))
+        row_of.append(before[batch.kind] + np.arange(count))
+        before[batch.kind] += count
+    kind, row = np.concatenate(kind_of), np.concatenate(row_of)
     if height:
         # Rounded, so that a difference in the last bit does not change what overlaps what.
         depth = np.round(np.concatenate([b.depth for b in rest]) / (1e-4 * height))
         order = np.argsort(-depth, kind="stable")
-    breaks = np.flatnonzero(np.diff(source[order])) + 1
-    for run in np.split(order, breaks):
-        batch = rest[source[run[0]]]
-        yield batch.kind, batch.data[element[run]]
+        kind, row = kind[order], row[order]
+    ends = np.flatnonzero(np.diff(kind, append=-1)) + 1
+    for first, last in pairwise((0, *ends)):
+        name = kinds[kind[first]]
+        yield name, rows[name][row[first:last]]
 
 
 def _tiles(width: int, height: int) -> Iterator[tuple[int, int, int, int]]:
@@ -209,9 +218,9 @@ def _draw_view(
         "per_side": np.array(per_side, "f4").tobytes(),
     }
     # Depths of two views cannot be compared: each begins with an empty depth buffer over the same colours.
-    samples.color_mask = (False,) * 4
+    samples.color_mask = (False, False, False, False)
     samples.clear()
-    samples.color_mask = (True,) * 4
+    samples.color_mask = (True, True, True, True)
     samples.use()
     gl.enable_only(moderngl.DEPTH_TEST)
     gl.depth_func = "<="

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -189,7 +190,7 @@ def rasterise(text: str, pixels: float) -> tuple[np.ndarray, int]:
     from matplotlib.font_manager import FontProperties
     from matplotlib.mathtext import MathTextParser
 
-    style = {"mathtext.fontset": "cm", "font.family": "cmr10", "text.hinting": "none"}
+    style: Any = {"mathtext.fontset": "cm", "font.family": "cmr10", "text.hinting": "none"}
     with matplotlib.rc_context(style):
         # The private parser: pyparsing's own error is a ValueError whose first line says enough.
         try:

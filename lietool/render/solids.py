@@ -4,6 +4,8 @@ These are for looking at: vertices are doubled along sharp edges.  Meshes to com
 `lietool.mesh.shapes`.
 """
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -20,10 +22,28 @@ def frame_along(direction: ArrayLike) -> np.ndarray:
     return np.stack([u, np.cross(w, u), w], axis=-1)
 
 
-def _grid_faces(rows: int, columns: int) -> np.ndarray:
+def grid_faces(rows: int, columns: int) -> np.ndarray:
+    """Return the triangles of a grid of vertices, row after row; shape (2 (rows - 1)(columns - 1), 3)."""
     a = np.arange(rows * columns).reshape(rows, columns)
     quads = np.stack([a[:-1, :-1], a[:-1, 1:], a[1:, 1:], a[1:, :-1]], axis=-1).reshape(-1, 4)
     return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+
+def grid(points: np.ndarray) -> Triangles:
+    """Return the surface through a grid of points.
+
+    Parameters
+    ----------
+    points : ndarray, shape (rows, columns, 3)
+        A first or last row may be a single point, a pole.
+    """
+    normals = np.cross(np.gradient(points, axis=0), np.gradient(points, axis=1))
+    length = np.linalg.norm(normals, axis=-1, keepdims=True)
+    normals /= np.where(length > 0.0, length, 1.0)
+    for edge, inner in ((0, 1), (-1, -2)):
+        if np.ptp(points[edge], axis=0).max() < 1e-9:
+            normals[edge] = normals[inner].mean(axis=0)
+    return points.reshape(-1, 3), grid_faces(*points.shape[:2]), normals.reshape(-1, 3)
 
 
 def revolve(profile: ArrayLike, segments: int = 40) -> Triangles:
@@ -44,7 +64,7 @@ def revolve(profile: ArrayLike, segments: int = 40) -> Triangles:
     angle = np.linspace(0.0, 2.0 * np.pi, segments + 1)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     vertices, normals, faces = [], [], []
-    for first, last in zip(profile[:-1], profile[1:], strict=True):
+    for first, last in pairwise(profile):
         along = last - first
         length = np.linalg.norm(along)
         if length == 0.0:
@@ -54,7 +74,7 @@ def revolve(profile: ArrayLike, segments: int = 40) -> Triangles:
             vertices.append(np.column_stack([radius * circle, np.full(segments + 1, z)]))
             normals.append(np.column_stack([out * circle, np.full(segments + 1, up)]))
         start = 2 * (segments + 1) * len(faces)
-        faces.append(_grid_faces(2, segments + 1)[:, ::1] + start)
+        faces.append(grid_faces(2, segments + 1) + start)
     return np.concatenate(vertices), np.concatenate(faces), np.concatenate(normals)
 
 
@@ -82,7 +102,7 @@ def sphere(radius: float = 1.0, center: ArrayLike = (0.0, 0.0, 0.0), rings: int 
     normals = np.stack(
         [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta) + 0.0 * phi], axis=-1
     ).reshape(-1, 3)
-    return radius * normals + center, _grid_faces(rings + 1, 2 * rings + 1), normals
+    return radius * normals + np.asarray(center, float), grid_faces(rings + 1, 2 * rings + 1), normals
 
 
 def transported_frames(points: np.ndarray, closed: bool) -> np.ndarray:
@@ -93,12 +113,17 @@ def transported_frames(points: np.ndarray, closed: bool) -> np.ndarray:
     after = np.concatenate([steps, steps[:1] if closed else steps[-1:]])
     tangents = before + after
     tangents /= np.linalg.norm(tangents, axis=-1, keepdims=True)
-    frames = [frame_along(tangents[0])]
-    for w in tangents[1:]:
-        u = frames[-1][:, 0] - (frames[-1][:, 0] @ w) * w
-        u /= np.linalg.norm(u)
-        frames.append(np.stack([u, np.cross(w, u), w], axis=-1))
-    return np.array(frames)
+    # Any frames along the curve, each then turned by what the transport of the one before differs from it.
+    u = np.cross(np.eye(3)[np.argmin(np.abs(tangents), axis=-1)], tangents)
+    u /= np.linalg.norm(u, axis=-1, keepdims=True)
+    v = np.cross(tangents, u)
+    a, b = tangents[:-1], tangents[1:]
+    lean = np.sum(b * u[:-1], axis=-1) / (1.0 + np.sum(a * b, axis=-1))
+    carried = u[:-1] - lean[:, None] * (a + b)
+    turn = np.arctan2(np.sum(carried * v[1:], axis=-1), np.sum(carried * u[1:], axis=-1))
+    angle = np.concatenate([[0.0], np.cumsum(turn)])[:, None]
+    first, second = np.cos(angle) * u + np.sin(angle) * v, np.cos(angle) * v - np.sin(angle) * u
+    return np.stack([first, second, tangents], axis=-1)
 
 
 def tube(points: ArrayLike, radius: float, closed: bool = False, segments: int = 16) -> Triangles:
@@ -135,7 +160,7 @@ def tube(points: ArrayLike, radius: float, closed: bool = False, segments: int =
     normals = scale[:, None, None] * ring + (lean[:, None] * frames[:, :, 2])[:, None, :]
     vertices = points[:, None, :] + radius * normals
     # Walking along the tube after walking around it turns the faces inwards; the other order is outwards.
-    faces = _grid_faces(len(points), segments + 1)
+    faces = grid_faces(len(points), segments + 1)
     return vertices.reshape(-1, 3), faces, normals.reshape(-1, 3)
 
 

@@ -21,16 +21,19 @@ ALGEBRA_TEXT = "#1f4d8a"
 GROUP = "#e0860b"
 WRONG = "#c8372d"
 RIGHT = "#2b66b1"
+MARK = "#c8372d"
 
 AXIS_X = "#c8372d"
 AXIS_Y = "#2e8b57"
 AXIS_Z = "#2b66b1"
+PAIRS = (ARC, AXIS_Y, AXIS_Z)
 AXES = (AXIS_X, AXIS_Y, AXIS_Z)
 
 GLASS = "#b4cdea"
 GLASS_EDGE = "#4a6a94"
 BONE = "#f3f1ea"
 SHELLS = ("#7aa6d8", "#f0b35a", "#6fb58f")
+SHELL_FILLS = ("#b3cdee", "#fadcae", "#b9dfca")
 SHELLS_TEXT = ("#2b5f9e", "#94560a", "#26704a")
 
 CURVE = 3.2

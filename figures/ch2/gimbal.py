@@ -1,0 +1,235 @@
+"""Gimbal lock, section 2.6 of the book: equations (2.21) to (2.23)."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+
+from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.lie import euler, so3
+from lietool.mesh import shapes
+from lietool.render import scene, solids, style
+from lietool.render.camera import Camera, Page
+from lietool.render.marks import beyond
+from lietool.render.plot import Axes, number
+
+NAMES = (r"\theta_1", r"\theta_2", r"\theta_3")
+
+
+@figure(
+    plates={
+        "GL1": Plate(
+            title="Three rings, at ordinary angles and at lock",
+            equations=("2.21", "2.22"),
+            caption=(
+                "The rotation R_z(theta_3) R_y(theta_2) R_x(theta_1) as three nested rings, each turning "
+                "about an axle in the next. Left: three independent axes. Right: at theta_2 = 90 degrees the "
+                "innermost axis has come to lie along the outermost, and one freedom is lost."
+            ),
+        ),
+        "GL2": Plate(
+            title="Euler angles that jump, and why",
+            equations=("2.22", "2.23"),
+            caption=(
+                "Above: the x-y-x Euler angles of R_z(theta). Two of them jump by 180 degrees as theta "
+                "passes through 0, although the rotation hardly moves. Below: the smallest singular value of "
+                "the Jacobian of the Euler map; it is zero at theta_2 = 0 for x-y-x, at 90 degrees for x-y-z."
+            ),
+            params={"view": "angles"},
+        ),
+    },
+    time=Time("theta2", 0.0, -90.0),
+)
+def gimbal(
+    view: Annotated[Literal["rings", "angles"], Param("the rings, or the angles as curves")] = "rings",
+    theta1: Annotated[float, Param("turn of the inner ring about x", "deg", -360.0, 360.0)] = 30.0,
+    theta2: Annotated[
+        float,
+        Param(
+            "turn of the middle ring about y; in the curves, the angle that is marked", "deg", -180.0, 180.0
+        ),
+    ] = -20.0,
+    theta3: Annotated[float, Param("turn of the outer ring about z", "deg", -360.0, 360.0)] = -12.0,
+) -> Drawing:
+    """Gimbal lock: two of the three axes of the Euler angles coincide, and the angles jump.
+
+    What to look for: on the left the red, green and blue axes point in three
+    directions; on the right red and blue share one line, so that turning the
+    inner ring only undoes turning the outer one. The smallest singular value
+    says how near the lock is: 0 there. With --view angles it is drawn over
+    theta_2, below the angles of a rotation that passes through the lock.
+    """
+    angles = np.deg2rad([theta1, theta2, theta3])
+    return _rings(angles) if view == "rings" else _curves(float(angles[1]))
+
+
+def _rings(angles: np.ndarray) -> Drawing:
+    locked = np.array([angles[0], np.copysign(np.pi / 2, angles[1]), angles[2]])
+    both = np.stack([angles, locked])
+    axes = euler.axes(both, "xyz")
+    smallest = euler.singular_values(both, "xyz").min(axis=-1)
+    camera = Camera((1.0, 0.62, 0.92), (0.0, 0.0, 0.08), 3.12)
+    views = []
+    for i, title in enumerate(("ordinary angles", "at lock")):
+        records = [*_gimbal(both[i]), *_axes(axes[i], camera)]
+        views.append(scene.View(tuple(records), camera, (600.0 * i, 136.0, 600.0, 690.0)))
+        views.append(scene.View(tuple(_legend(300.0 + 600.0 * i, title, both[i], smallest[i]))))
+    views.append(scene.View((scene.Lines([(600, 60, 0), (600, 840, 0)], style.RULE, style.HAIR),)))
+    numbers = {
+        "angles": both,
+        "rotation": euler.to_matrix(both, "xyz"),
+        "axes": axes,
+        "smallest_singular_value": smallest,
+    }
+    return Drawing(scene.Picture(tuple(views)), numbers)
+
+
+def _legend(x: float, title: str, angles: np.ndarray, smallest: float) -> list[scene.Record]:
+    degrees = [number(a, 1) for a in np.rad2deg(angles)]
+    values = r",\;\, ".join(rf"{n} = {d}^{{\circ}}" for n, d in zip(NAMES, degrees, strict=True))
+    return [
+        scene.Label(title, (x, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn"),
+        scene.Label(f"${values}$", (x, 104.0, 0.0), style.INK, style.SMALL_TEXT, anchor="cn"),
+        scene.Label(
+            rf"$\sigma_{{\min}} = {number(smallest)}$",
+            (x, 58.0, 0.0),
+            style.INK,
+            style.SMALL_TEXT,
+            anchor="cn",
+        ),
+    ]
+
+
+def _gimbal(angles: np.ndarray) -> list[scene.Record]:
+    """Rings from the outside in, each with the axle that carries the next; the solid is on the inner one."""
+    outer, middle, inner = euler.ring_frames(angles, "xyz")
+    # A ring is made about z; these bring that axis to the normal of the plane that holds both of its axles.
+    about_x, about_y = so3.rotation("y", np.pi / 2), so3.rotation("x", -np.pi / 2)
+    records: list[scene.Record] = [
+        _ring(outer @ about_x, 0.90, style.AXIS_Z),
+        _ring(middle, 0.73, style.AXIS_Y),
+        _ring(inner @ about_y, 0.56, style.AXIS_X),
+    ]
+    for axis, near, far, color in (
+        (outer[:, 2], 0.98, 1.16, style.INK),
+        (outer[:, 1], 0.78, 0.92, style.INK),
+        (middle[:, 0], 0.61, 0.75, style.INK),
+    ):
+        records += [scene.Tube([s * near * axis, s * far * axis], color, 0.035) for s in (-1.0, 1.0)]
+    vertices, faces, side = shapes.letter_solid()
+    records.append(scene.Tube([0.36 * inner[:, 2], 0.52 * inner[:, 2]], style.INK, 0.025))
+    scaled = 0.74 * vertices @ inner.T
+    for kind, color in enumerate((style.ARC, "#b8b2a4", style.BONE)):
+        records.append(scene.Surface(scaled, faces[side == kind], color))
+    return records
+
+
+def _ring(R: np.ndarray, radius: float, color: str) -> scene.Surface:
+    vertices, faces, normals = solids.band(radius - 0.05, radius + 0.05, 0.11)
+    return scene.Surface(vertices @ R.T, faces, color, normals @ R.T)
+
+
+def _axes(axes: np.ndarray, camera: Camera) -> list[scene.Record]:
+    """The three axes of rotation, each with its turn; two that coincide share a line, with both names."""
+    together = abs(axes[0] @ axes[2]) > 1.0 - 1e-9
+    records: list[scene.Record] = []
+    for k, reach in ((0, 1.26), (1, 1.26), (2, 1.56)):
+        axis, color = axes[k], style.AXES[k]
+        if together and k == 0:
+            continue
+        names = (0, 2) if together and k == 2 else (k,)
+        records += [
+            scene.Lines([-reach * axis, reach * axis], color, style.EDGE),
+            scene.Arrow((reach - 0.34) * axis, reach * axis, color, 0.02),
+            beyond("$" + r",\,".join(NAMES[n] for n in names) + "$", reach * axis, axis, camera),
+        ]
+        records += _turn((reach - 0.26) * axis, axis, color, camera)
+        if together and k == 2:
+            records += _turn((reach - 0.47) * axis, axes[0], style.AXIS_X, camera)
+            ends = np.linspace(-reach, reach, 24)[:, None] * axis
+            records += [scene.Tube(ends[i : i + 2], style.AXES[i % 4], 0.02) for i in range(0, 22, 2)]
+    return records
+
+
+def _turn(center: np.ndarray, axis: np.ndarray, color: str, camera: Camera) -> list[scene.Record]:
+    """A curved arrow about an axis, its gap away from the viewer."""
+    frame = solids.frame_along(axis)
+    toward = frame[:, :2].T @ camera.axes[2]
+    middle = np.arctan2(toward[1], toward[0])
+    angle = middle + np.deg2rad(np.linspace(-125.0, 105.0, 41))
+    ring = np.cos(angle)[:, None] * frame[:, 0] + np.sin(angle)[:, None] * frame[:, 1]
+    curve = center + 0.15 * ring
+    ahead = np.cross(axis, ring[-1])
+    return [
+        scene.Tube(curve, color, 0.011),
+        scene.Arrow(curve[-1], curve[-1] + 0.10 * ahead, color, 0.011, 3.0),
+    ]
+
+
+def _curves(marked: float) -> Drawing:
+    # Midpoints of degrees: at 0 and 180 themselves the angles are not determined.
+    theta = np.deg2rad(np.arange(-179.5, 180.0))
+    angles = euler.from_matrix(so3.rotation("z", theta), "xyx")
+    second = np.linspace(-np.pi, np.pi, 721)
+    rows = np.stack([0.0 * second, second, 0.0 * second], axis=-1)
+    smallest = {c: euler.singular_values(rows, c).min(axis=-1) for c in ("xyx", "xyz")}
+    here = euler.from_matrix(so3.rotation("z", marked), "xyx")
+    records = [*_jump(theta, angles, marked, here), *_singular(second, smallest, marked)]
+    numbers = {"theta": theta, "angles": angles, "theta_2": second, "marked": here}
+    numbers |= {f"smallest_singular_value_{c}": s for c, s in smallest.items()}
+    return Drawing(scene.Picture((scene.View(tuple(records), Page()),)), numbers)
+
+
+def _degree_ticks(step: int, last: int = 180) -> list[tuple[float, str]]:
+    return [(d, rf"${d}^{{\circ}}$") for d in range(-last, last + 1, step)]
+
+
+def _jump(theta: np.ndarray, angles: np.ndarray, marked: float, here: np.ndarray) -> list[scene.Record]:
+    axes = Axes((150.0, 500.0, 880.0, 270.0), (-180.0, 180.0), (-100.0, 190.0))
+    title = rf"$R_x({NAMES[2]})\,R_y({NAMES[1]})\,R_x({NAMES[0]}) = R_z(\theta)$"
+    records = axes.frame(_degree_ticks(90), _degree_ticks(90)[1:], r"$\theta$", title, title_size=style.TEXT)
+    records.append(axes.vertical(0.0, style.MUTED))
+    x, y = np.rad2deg(theta), np.rad2deg(angles)
+    middle = len(x) // 2
+    for k in (1, 0, 2):
+        color = style.AXES[k]
+        records.append(axes.curve(np.insert(x, middle, np.nan), np.insert(y[:, k], middle, np.nan), color))
+        # The ends of a jump: neither belongs to the curve.
+        if abs(y[middle, k] - y[middle - 1, k]) > 90.0:
+            records.append(axes.dots([0.0, 0.0], y[[middle - 1, middle], k], style.INK, hollow=True))
+        name = f"${NAMES[k]}$"
+        records.append(
+            scene.Label(name, axes.at(180.0, y[-1, k]), color, style.TEXT, (16.0, 0.0), "lc", halo=False)
+        )
+    across = float(np.abs(y[middle] - y[middle - 1]).max())
+    text = rf"a jump of ${number(across, 0)}^{{\circ}}$"
+    records.append(scene.Label(text, axes.at(0.0, -45.0), style.INK, style.SMALL_TEXT, (16.0, 0.0), "lc"))
+    if marked:
+        at = np.rad2deg(marked)
+        records.append(axes.vertical(at, style.RULE, dash=None))
+        records += [
+            axes.dots(at, value, color) for value, color in zip(np.rad2deg(here), style.AXES, strict=True)
+        ]
+    return records
+
+
+def _singular(second: np.ndarray, smallest: dict[str, np.ndarray], marked: float) -> list[scene.Record]:
+    axes = Axes((150.0, 100.0, 880.0, 250.0), (-180.0, 180.0), (0.0, 1.1))
+    title = r"smallest singular value of the Jacobian"
+    records = axes.frame(
+        _degree_ticks(90),
+        [(0.0, "$0$"), (0.5, "$0.5$"), (1.0, "$1$")],
+        f"${NAMES[1]}$",
+        title,
+        title_size=style.TEXT,
+    )
+    x = np.rad2deg(second)
+    for convention, color, dash in (("xyz", style.MUTED, (10.0, 7.0)), ("xyx", style.INK, None)):
+        records.append(axes.curve(x, smallest[convention], color, dash=dash))
+        records.append(axes.dots(x[smallest[convention] < 1e-9], 0.0, color))
+    records.append(scene.Label("x-y-x", axes.at(-90.0, 1.0), style.INK, style.SMALL_TEXT, (0.0, 14.0), "cb"))
+    records.append(scene.Label("x-y-z", axes.at(0.0, 1.0), style.MUTED, style.SMALL_TEXT, (0.0, 14.0), "cb"))
+    if marked:
+        value = float(np.interp(abs(marked), second, smallest["xyx"]))
+        records.append(axes.vertical(abs(float(np.rad2deg(marked))), style.RULE, dash=None))
+        records.append(axes.dots(abs(float(np.rad2deg(marked))), value, style.AXIS_Y))
+    return records

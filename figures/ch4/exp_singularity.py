@@ -1,0 +1,351 @@
+"""Figure 4.2 of the book and the paths of section 4.6."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+
+from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.lie import quaternion, so3
+from lietool.render import scene, solids, style
+from lietool.render.camera import Camera
+from lietool.render.globe import globe, joined
+from lietool.render.marks import beyond
+from lietool.render.plot import Axes, number
+
+FULL = 2.0 * np.pi
+
+
+@figure(
+    plates={
+        "B4.2": Plate(
+            title="The exponential map of SO(3) in four stages",
+            equations=("4.27", "4.28", "4.29", "4.30"),
+            caption=(
+                "One dimension lower than life. (a) Rotation vectors x, cut into shells by the spheres "
+                "|x| = 2n pi. (b) Each of those spheres collapses to a point, and every shell becomes a "
+                "sphere of unit quaternions. (c) The spheres are laid onto one, S^3. (d) Opposite points are "
+                "the same rotation. The marked x moves outwards; follow it through the stages."
+            ),
+        ),
+        "B4.2b": Plate(
+            title="A path through the identity whose logarithm must jump, and one beside it",
+            equations=("4.25", "4.27", "4.30"),
+            caption=(
+                "Left: a full turn about x, then a turn about y. The path turns off at I, and no logarithm "
+                "of it is continuous. Right: the same path moved aside by a small rotation avoids I, and its "
+                "logarithm runs round inside the sphere |x| = 2 pi. Below: the smallest singular value of "
+                "d exp, zero at every |x| = 2n pi; the dots are the two paths where they are now."
+            ),
+            params={"view": "paths", "turn": 450.0},
+        ),
+    },
+    time=Time("turn", 0.0, 720.0),
+)
+def exp_singularity(
+    view: Annotated[Literal["stages", "paths"], Param("the four stages, or the two paths")] = "stages",
+    turn: Annotated[float, Param("how far the marked rotation has turned", "deg", 0.0, 1080.0)] = 500.0,
+    azimuth: Annotated[
+        float,
+        Param("direction of the marked rotation vector in the plane of the stages", "deg", -360.0, 360.0),
+    ] = -50.0,
+    shells: Annotated[int, Param("number of shells in the stages", low=1, high=3)] = 3,
+    aside: Annotated[
+        float, Param("rotation about z that moves the second path off I", "deg", 1.0, 60.0)
+    ] = 20.0,
+) -> Drawing:
+    """The exponential map of SO(3) folds space: at |x| = 2n pi a whole sphere goes to the identity.
+
+    What to look for: in (a) the bold circles stand for spheres of rotation
+    vectors of full turns; in (b) each has shrunk to a point, alternately 1 and -1.
+    The shells have the same colours throughout. With --view paths the sphere
+    |x| = 2 pi is drawn in space: the path that passes through I has to jump
+    from it to the origin, the path beside I never does.
+    """
+    x = np.deg2rad(turn) * np.array([np.cos(np.deg2rad(azimuth)), np.sin(np.deg2rad(azimuth)), 0.0])
+    return _stages(x, shells) if view == "stages" else _paths(np.deg2rad(turn), np.deg2rad(aside))
+
+
+# Rotation vectors lie in the plane z = 0; the real part of a quaternion is drawn along x, 1 at the left.
+
+
+def _drawn(q: np.ndarray) -> np.ndarray:
+    """Unit quaternions without a part along k as points of the unit sphere."""
+    return np.stack([-q[..., 0], q[..., 2], q[..., 1]], axis=-1)
+
+
+def _to_sphere(x: np.ndarray) -> np.ndarray:
+    """q = exp(x / 2), where |x| / 2 is the angle of (2.31)."""
+    return _drawn(quaternion.exp(x / 2.0))
+
+
+def _to_chain(x: np.ndarray, shell: np.ndarray | int) -> np.ndarray:
+    """The same sphere for every shell, side by side, every second one turned round so that they meet."""
+    shell = np.broadcast_to(shell, x.shape[:-1])
+    along = np.stack([2.0 * shell, 0.0 * shell, 0.0 * shell], axis=-1)
+    return np.where(shell % 2 == 1, -1.0, 1.0)[..., None] * _to_sphere(x) + along
+
+
+def _to_rotations(x: np.ndarray) -> np.ndarray:
+    """R = exp(hat x), drawn where its quaternion with non-negative real part lies."""
+    q = quaternion.from_matrix(so3.exp(x))
+    return _drawn(np.where(q[..., :1] < 0.0, -q, q))
+
+
+def _shell(x: np.ndarray, shells: int) -> np.ndarray:
+    """Which shell a rotation vector lies in, counted from 0; full turns belong to the inner one."""
+    turns = np.linalg.norm(x, axis=-1) / FULL
+    return np.clip(np.ceil(turns - 1e-12) - 1, 0, shells - 1).astype(int)
+
+
+def _polar(r: np.ndarray, phi: np.ndarray) -> np.ndarray:
+    """Rotation vectors from length and azimuth."""
+    r, phi = np.broadcast_arrays(r, phi)
+    return np.stack([r * np.cos(phi), r * np.sin(phi), 0.0 * r], axis=-1)
+
+
+def _grid(n: int, azimuths: tuple[float, float] = (0.0, FULL)) -> np.ndarray:
+    """Rotation vectors of the n-th shell (from 0), shape (rings, spokes, 3)."""
+    return _polar(np.linspace(FULL * n, FULL * (n + 1), 33)[:, None], np.linspace(*azimuths, 97)[None, :])
+
+
+def _graticule(n: int) -> list[np.ndarray]:
+    """Circles and spokes of the n-th shell, to be carried by the maps."""
+    around, along = np.linspace(0.0, FULL, 97), np.linspace(FULL * n, FULL * (n + 1), 33)
+    circles = [_polar(np.array(FULL * (n + k / 6.0)), around) for k in range(1, 6)]
+    return circles + [_polar(along, np.array(k * np.pi / 6.0)) for k in range(12)]
+
+
+def _surface(points: np.ndarray, color: str, material: Literal["matte", "glass"] = "matte") -> scene.Surface:
+    vertices, faces, normals = solids.grid(points)
+    return scene.Surface(vertices, faces, color, normals, material)
+
+
+def _marked(trail: np.ndarray, name: str, offset: tuple[float, float], radius: float) -> list[scene.Record]:
+    """The way of the marked point, broken where it jumps, and the point itself."""
+    jumps = np.flatnonzero(np.linalg.norm(np.diff(trail, axis=0), axis=-1) > 0.5) + 1
+    pieces = [piece for piece in np.split(trail, jumps) if len(piece) > 1]
+    return [
+        *(scene.Tube(piece, style.MARK, radius) for piece in pieces),
+        scene.Points(trail[-1:], style.MARK, 10.0, rim=style.PAPER),
+        scene.Label(name, trail[-1], style.MARK, style.TEXT, offset),
+    ]
+
+
+def _stages(x: np.ndarray, shells: int) -> Drawing:
+    trail = np.linspace(0.0, 1.0, 301)[:, None] * x
+    direction = (0.16, -1.0, 0.45)
+    plane = Camera((0.0, -1.0, 0.95), (0.0, -0.04, 0.0), 1.75)
+    chain = Camera(direction, (shells - 1.0, 0.0, 0.0), max(1.66 * shells, 2.7))
+    sphere = Camera(direction, (0.0, 0.0, 0.0), 2.7)
+    panels = (
+        ((0.0, 455.0, 600.0, 385.0), plane, _disc(trail, shells)),
+        ((600.0, 455.0, 600.0, 385.0), chain, _beads(trail, shells, chain)),
+        ((600.0, 5.0, 600.0, 385.0), sphere, _layers(trail, shells, sphere)),
+        ((0.0, 5.0, 600.0, 385.0), sphere, _half(trail, sphere)),
+    )
+    views = [scene.View(tuple(records), camera, box) for box, camera, records in panels]
+    numbers = {
+        "x": x,
+        "shell": int(_shell(x, shells)) + 1,
+        "quaternion": quaternion.exp(x / 2.0),
+        "rotation": so3.exp(x),
+        "collapsed_to": quaternion.exp(_polar(FULL * np.arange(1, shells + 1), np.array(0.0)) / 2.0),
+    }
+    return Drawing(scene.Picture((*views, scene.View(tuple(_captions())))), numbers)
+
+
+def _disc(trail: np.ndarray, shells: int) -> list[scene.Record]:
+    around = np.linspace(0.0, FULL, 181)
+    records: list[scene.Record] = []
+    for n in range(shells):
+        records.append(_surface(_grid(n) / (FULL * shells), style.SHELL_FILLS[n]))
+        records.append(
+            scene.Lines(
+                joined(g / (FULL * shells) for g in _graticule(n)),
+                style.INK,
+                style.HAIR,
+                0.3,
+            )
+        )
+        rim = _polar(np.array(FULL * (n + 1.0)), around)
+        records.append(scene.Lines(rim / (FULL * shells), style.INK, 3.4, lift=0.02))
+        at = _polar(np.array(FULL * (n + 1.0)), np.deg2rad(75.0)) / (FULL * shells)
+        records.append(scene.Label(rf"${2 * (n + 1)}\pi$", at, style.INK, style.SMALL_TEXT, (8.0, 20.0)))
+    records.append(scene.Points([(0.0, 0.0, 0.0)], style.INK, 6.0))
+    return records + _marked(trail / (FULL * shells), "$x$", (24.0, 0.0), 0.010)
+
+
+def _beads(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record]:
+    records: list[scene.Record] = []
+    for n in range(shells):
+        center = (2.0 * n, 0.0, 0.0)
+        records.append(_surface(_to_chain(_grid(n), n), style.SHELLS[n], "glass"))
+        lines = joined(_to_chain(g, n) for g in _graticule(n))
+        records.append(scene.Lines(lines, style.INK, style.HAIR, 0.3))
+        records.append(scene.Lines(camera.sphere_outline(center, 1.0), style.SHELLS_TEXT[n], style.EDGE))
+    poles = np.array([(2.0 * n - 1.0, 0.0, 0.0) for n in range(shells + 1)])
+    records.append(scene.Points(poles, style.INK, 7.0))
+    for n, pole in enumerate(poles):
+        name = "$1$" if n % 2 == 0 else "$-1$"
+        offset = (-20.0, 0.0) if n == 0 else (24.0, 0.0) if n == shells else (0.0, 62.0)
+        records.append(scene.Label(name, pole, style.INK, style.SMALL_TEXT, offset))
+    carried = _to_chain(trail, _shell(trail, shells))
+    return records + _marked(carried, "", (0.0, -30.0), 0.03)
+
+
+def _layers(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record]:
+    """All copies laid on one sphere, cut open: the far half as a bowl, each copy a layer of its wall."""
+    far = (np.deg2rad(30.0), np.deg2rad(210.0))
+    bowl = _to_sphere(_grid(0, far))
+    rim = np.concatenate([bowl[:, 0], bowl[::-1, -1]])
+    layer = 0.075
+    outer = 1.0 + layer * shells
+    records: list[scene.Record] = [
+        _surface(bowl, style.SHELL_FILLS[0]),
+        _surface(outer * bowl, style.SHELL_FILLS[shells - 1]),
+    ]
+    lines = joined(_to_sphere(g) for g in _graticule(0))
+    behind = np.where((lines @ camera.axes[2] < 0.1)[:, None], 0.999 * lines, np.nan)
+    records.append(scene.Lines(behind, style.INK, style.HAIR, 0.3))
+    for n in range(shells):
+        wall = np.stack([(1.0 + layer * n) * rim, (1.0 + layer * (n + 1)) * rim])
+        records.append(_surface(wall, style.SHELLS[n]))
+        records.append(scene.Lines(wall[1], style.SHELLS_TEXT[n], style.THIN))
+    records.append(scene.Lines(rim, style.SHELLS_TEXT[0], style.THIN))
+    for side, name in ((-1.0, "$1$"), (1.0, "$-1$")):
+        pole = np.array([side, 0.0, 0.0])
+        records.append(scene.Points([pole], style.INK, 7.0))
+        records.append(scene.Label(name, outer * pole, style.INK, style.SMALL_TEXT, (26.0 * side, 0.0)))
+    return records + _marked(_to_sphere(trail), "$q$", (0.0, 30.0), 0.016)
+
+
+def _half(trail: np.ndarray, camera: Camera) -> list[scene.Record]:
+    grid = _grid(0)[:17]
+    around = np.linspace(0.0, FULL, 181)
+    rim = _to_rotations(_polar(np.array(np.pi - 1e-9), around))
+    lines = [_to_sphere(g) for g in _graticule(0)[:2]]
+    lines += [_to_sphere(_polar(np.linspace(0.0, np.pi, 17), np.array(k * np.pi / 6.0))) for k in range(12)]
+    records: list[scene.Record] = [
+        _surface(_to_sphere(grid), style.GLASS, "glass"),
+        scene.Lines(joined(lines), style.GLASS_EDGE, style.HAIR, 0.6),
+        scene.Lines(rim, style.INK, 3.0),
+        scene.Points([(-1.0, 0.0, 0.0)], style.INK, 7.0),
+        scene.Label("$I$", (-1.0, 0.0, 0.0), style.INK, style.TEXT, (-24.0, 0.0)),
+    ]
+    for azimuth, color in zip(np.deg2rad([20.0, 80.0, 140.0]), style.PAIRS, strict=True):
+        pair = _drawn(quaternion.exp(_polar(np.array([np.pi, -np.pi]) / 2.0, azimuth)))
+        records.append(scene.Lines(pair, color, style.THIN, dash=(6.0, 6.0)))
+        records.append(scene.Points(pair, color, 8.0))
+    return records + _marked(_to_rotations(trail), "$R$", (0.0, 30.0), 0.016)
+
+
+def _captions() -> list[scene.Record]:
+    texts = (
+        (300.0, 872.0, r"(a)  rotation vectors $x \in \mathrm{\mathbb{R}}^3$"),
+        (900.0, 872.0, r"(b)  $|x| = 2n\pi$ becomes a point"),
+        (900.0, 410.0, r"(c)  $q = \exp(x/2) \in S^3$"),
+        (300.0, 410.0, r"(d)  $q$ and $-q$ are one $R \in SO(3)$"),
+    )
+    arrows = (((570, 650), (640, 650)), ((900, 470), (900, 440)), ((640, 190), (570, 190)))
+    records: list[scene.Record] = [
+        scene.Label(text, (x, y - 8.0, 0.0), style.INK, style.SMALL_TEXT + 3.0, anchor="cn")
+        for x, y, text in texts
+    ]
+    return records + [scene.Arrow((*a, 0.0), (*b, 0.0), style.INK, 2.0, 4.0) for a, b in arrows]
+
+
+def _paths(turn: float, aside: float) -> Drawing:
+    """R_x up to a full turn, then R_y: as it is, and moved aside by a rotation about z."""
+    # Closest together where the path passes I: beside it the logarithm moves fastest.
+    s = np.linspace(-1.0, 1.0, 301)
+    steps = FULL * (1.0 + s * np.abs(s))
+    through = _motion(steps)
+    beside = so3.rotation("z", aside) @ through
+    shown = steps <= turn + 1e-12
+    lifts = [
+        _follow(path, start)
+        for path, start in ((through, np.zeros(3)), (beside, np.array([0.0, 0.0, aside])))
+    ]
+    x = np.linspace(0.0, 3.0 * FULL, 601)
+    jacobian = so3.left_jacobian(np.stack([x, 0.0 * x, 0.0 * x], axis=-1))
+    smallest = np.linalg.svd(jacobian, compute_uv=False).min(axis=-1)
+    camera = Camera((1.0, 0.50, 0.42), (0.0, 0.0, 0.0), 3.1)
+    views = [
+        scene.View(tuple(_lift_view(lift[shown] / FULL, camera, i)), camera, (600.0 * i, 318.0, 600.0, 500.0))
+        for i, lift in enumerate(lifts)
+    ]
+    titles = ("through the identity", "beside the identity")
+    page: list[scene.Record] = [
+        scene.Label(text, (300.0 + 600.0 * i, 856.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
+        for i, text in enumerate(titles)
+    ]
+    page += _smallest(x, smallest, [float(np.linalg.norm(lift[shown][-1])) for lift in lifts])
+    steps_between = [np.linalg.norm(np.diff(lift, axis=0), axis=-1).max() for lift in lifts]
+    numbers = {
+        "turn": steps,
+        "lift_through": lifts[0],
+        "lift_beside": lifts[1],
+        "largest_step": np.array(steps_between),
+        "length": x,
+        "smallest_singular_value": smallest,
+    }
+    return Drawing(scene.Picture((*views, scene.View(tuple(page)))), numbers)
+
+
+def _motion(turn: np.ndarray) -> np.ndarray:
+    first, then = np.minimum(turn, FULL), np.maximum(turn - FULL, 0.0)
+    return so3.rotation("y", then) @ so3.rotation("x", first)
+
+
+def _follow(path: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """The logarithm of each rotation nearest to that of the one before."""
+    lift = [start]
+    for R in path[1:]:
+        lift.append(so3.log_near(R, lift[-1])[0])
+    return np.array(lift)
+
+
+def _lift_view(lift: np.ndarray, camera: Camera, which: int) -> list[scene.Record]:
+    jumps = np.flatnonzero(np.linalg.norm(np.diff(lift, axis=0), axis=-1) > 0.5) + 1
+    color = (style.WRONG, style.RIGHT)[which]
+    records: list[scene.Record] = [*globe(camera, alpha=0.75)]
+    for k, axis in enumerate(np.eye(3)):
+        records.append(scene.Arrow(np.zeros(3), 1.42 * axis, style.INK, 0.010))
+        records.append(beyond(f"$x_{k + 1}$", 1.42 * axis, axis, camera, size=style.SMALL_TEXT, gap=22.0))
+    corner = (camera.axes[0] + camera.axes[1]) / np.sqrt(2.0)
+    records.append(
+        beyond(
+            r"$|x| = 2\pi$",
+            corner,
+            camera.axes[0],
+            camera,
+            color=style.GLASS_EDGE,
+            size=style.SMALL_TEXT,
+            gap=62.0,
+        )
+    )
+    for piece in np.split(lift, jumps):
+        if len(piece) > 1:
+            records.append(scene.Tube(piece, color, 0.018))
+    for jump in jumps:
+        records.append(scene.Lines(lift[jump - 1 : jump + 1], color, 2.6, dash=(4.0, 6.0)))
+        records.append(scene.Points(lift[jump - 1 : jump + 1], style.PAPER, 8.0, rim=color))
+        text = rf"a jump of ${number(np.linalg.norm(lift[jump] - lift[jump - 1]) * 2.0)}\pi$"
+        records.append(scene.Label(text, lift[jump - 1], color, style.SMALL_TEXT, (18.0, -18.0), "lt"))
+    records.append(scene.Points(lift[[0]], color, 8.0))
+    records.append(scene.Points(lift[[-1]], color, 11.0, rim=style.PAPER))
+    return records
+
+
+def _smallest(x: np.ndarray, values: np.ndarray, marked: list[float]) -> list[scene.Record]:
+    axes = Axes((150.0, 90.0, 880.0, 170.0), (0.0, 3.0 * FULL), (0.0, 1.1))
+    ticks = [(FULL * n, rf"${2 * n}\pi$" if n else "$0$") for n in range(4)]
+    records = axes.frame(
+        ticks, [(0.0, "$0$"), (1.0, "$1$")], "$|x|$", r"smallest singular value of $d\exp_x$"
+    )
+    records.append(axes.area(x, values, style.INK, 0.07))
+    records.append(axes.curve(x, values, style.INK))
+    records.append(axes.dots(FULL * np.arange(1, 4), 0.0, style.INK))
+    for length, color in zip(marked, (style.WRONG, style.RIGHT), strict=True):
+        records.append(axes.dots(length, np.interp(length, x, values), color, 9.0))
+    return records

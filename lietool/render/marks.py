@@ -1,0 +1,41 @@
+"""Text placed by rule: where a label goes follows from what it names."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lietool.render import style
+from lietool.render.camera import Camera
+from lietool.render.scene import Label
+
+
+def beyond(
+    text: str,
+    at: ArrayLike,
+    direction: ArrayLike,
+    camera: Camera,
+    *,
+    color: str = style.INK,
+    size: float = style.TEXT,
+    gap: float = 28.0,
+) -> Label:
+    """Return a label beyond a point, further along a direction as the camera sees it.
+
+    Parameters
+    ----------
+    text : str
+        Mathtext.
+    at : array_like, shape (3,)
+        The point, such as the tip of an arrow.
+    direction : array_like, shape (3,)
+        Any length; one straight at the viewer puts the label above the point.
+    camera : Camera
+    color : str
+    size : float
+        Type size in page units.
+    gap : float
+        From the point to the middle of the label, in page units.
+    """
+    along = camera.axes[:2] @ np.asarray(direction, float)
+    length = float(np.linalg.norm(along))
+    along = along / length if length > 1e-9 else np.array([0.0, 1.0])
+    return Label(text, np.asarray(at, float), color, size, (gap * along[0], gap * along[1]))
