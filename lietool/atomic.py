@@ -31,8 +31,8 @@ def write_bytes(path: Path, data: bytes) -> None:
         # mkstemp makes private files; a picture should be as readable as any other file.
         umask = os.umask(0)
         os.umask(umask)
-        os.chmod(name, 0o666 & ~umask)
-        os.replace(name, path)
+        Path(name).chmod(0o666 & ~umask)
+        Path(name).replace(path)
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise

@@ -3,13 +3,14 @@
 from typing import Annotated, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lietool.figure import Drawing, Param, Plate, Time, figure
 from lietool.lie import quaternion, so3
 from lietool.render import scene, solids, style
 from lietool.render.camera import Camera
 from lietool.render.globe import globe, joined
-from lietool.render.marks import beyond
+from lietool.render.marks import coordinate_axes
 from lietool.render.plot import Axes, number
 
 FULL = 2.0 * np.pi
@@ -61,8 +62,14 @@ def exp_singularity(
     |x| = 2 pi is drawn in space: the path that passes through I has to jump
     from it to the origin, the path beside I never does.
     """
-    x = np.deg2rad(turn) * np.array([np.cos(np.deg2rad(azimuth)), np.sin(np.deg2rad(azimuth)), 0.0])
-    return _stages(x, shells) if view == "stages" else _paths(np.deg2rad(turn), np.deg2rad(aside))
+    if view == "paths":
+        return _paths(np.deg2rad(turn), np.deg2rad(aside))
+    if turn > 360.0 * shells:
+        raise ValueError(
+            f"exp-singularity: turn must lie inside the shells, at most {360 * shells} degrees for {shells}; "
+            f"got {turn:g}. Use more shells, or turn less"
+        )
+    return _stages(_polar(np.deg2rad(turn), np.deg2rad(azimuth)), shells)
 
 
 # Rotation vectors lie in the plane z = 0; the real part of a quaternion is drawn along x, 1 at the left.
@@ -97,7 +104,7 @@ def _shell(x: np.ndarray, shells: int) -> np.ndarray:
     return np.clip(np.ceil(turns - 1e-12) - 1, 0, shells - 1).astype(int)
 
 
-def _polar(r: np.ndarray, phi: np.ndarray) -> np.ndarray:
+def _polar(r: ArrayLike, phi: ArrayLike) -> np.ndarray:
     """Rotation vectors from length and azimuth."""
     r, phi = np.broadcast_arrays(r, phi)
     return np.stack([r * np.cos(phi), r * np.sin(phi), 0.0 * r], axis=-1)
@@ -111,8 +118,8 @@ def _grid(n: int, azimuths: tuple[float, float] = (0.0, FULL)) -> np.ndarray:
 def _graticule(n: int) -> list[np.ndarray]:
     """Circles and spokes of the n-th shell, to be carried by the maps."""
     around, along = np.linspace(0.0, FULL, 97), np.linspace(FULL * n, FULL * (n + 1), 33)
-    circles = [_polar(np.array(FULL * (n + k / 6.0)), around) for k in range(1, 6)]
-    return circles + [_polar(along, np.array(k * np.pi / 6.0)) for k in range(12)]
+    circles = [_polar(FULL * (n + k / 6.0), around) for k in range(1, 6)]
+    return circles + [_polar(along, k * np.pi / 6.0) for k in range(12)]
 
 
 def _surface(points: np.ndarray, color: str, material: Literal["matte", "glass"] = "matte") -> scene.Surface:
@@ -122,13 +129,17 @@ def _surface(points: np.ndarray, color: str, material: Literal["matte", "glass"]
 
 def _marked(trail: np.ndarray, name: str, offset: tuple[float, float], radius: float) -> list[scene.Record]:
     """The way of the marked point, broken where it jumps, and the point itself."""
-    jumps = np.flatnonzero(np.linalg.norm(np.diff(trail, axis=0), axis=-1) > 0.5) + 1
-    pieces = [piece for piece in np.split(trail, jumps) if len(piece) > 1]
+    pieces = np.split(trail, _jumps(trail))
     return [
         *(scene.Tube(piece, style.MARK, radius) for piece in pieces),
         scene.Points(trail[-1:], style.MARK, 10.0, rim=style.PAPER),
         scene.Label(name, trail[-1], style.MARK, style.TEXT, offset),
     ]
+
+
+def _jumps(curve: np.ndarray) -> np.ndarray:
+    """Where a curve that is finely sampled does not go on: the indices of the points after a jump."""
+    return np.flatnonzero(np.linalg.norm(np.diff(curve, axis=0), axis=-1) > 0.5) + 1
 
 
 def _stages(x: np.ndarray, shells: int) -> Drawing:
@@ -149,7 +160,7 @@ def _stages(x: np.ndarray, shells: int) -> Drawing:
         "shell": int(_shell(x, shells)) + 1,
         "quaternion": quaternion.exp(x / 2.0),
         "rotation": so3.exp(x),
-        "collapsed_to": quaternion.exp(_polar(FULL * np.arange(1, shells + 1), np.array(0.0)) / 2.0),
+        "collapsed_to": quaternion.exp(_polar(FULL * np.arange(1, shells + 1), 0.0) / 2.0),
     }
     return Drawing(scene.Picture((*views, scene.View(tuple(_captions())))), numbers)
 
@@ -159,17 +170,11 @@ def _disc(trail: np.ndarray, shells: int) -> list[scene.Record]:
     records: list[scene.Record] = []
     for n in range(shells):
         records.append(_surface(_grid(n) / (FULL * shells), style.SHELL_FILLS[n]))
-        records.append(
-            scene.Lines(
-                joined(g / (FULL * shells) for g in _graticule(n)),
-                style.INK,
-                style.HAIR,
-                0.3,
-            )
-        )
-        rim = _polar(np.array(FULL * (n + 1.0)), around)
+        lines = joined(g / (FULL * shells) for g in _graticule(n))
+        records.append(scene.Lines(lines, style.INK, style.HAIR, 0.3))
+        rim = _polar(FULL * (n + 1.0), around)
         records.append(scene.Lines(rim / (FULL * shells), style.INK, 3.4, lift=0.02))
-        at = _polar(np.array(FULL * (n + 1.0)), np.deg2rad(75.0)) / (FULL * shells)
+        at = _polar(FULL * (n + 1.0), np.deg2rad(75.0)) / (FULL * shells)
         records.append(scene.Label(rf"${2 * (n + 1)}\pi$", at, style.INK, style.SMALL_TEXT, (8.0, 20.0)))
     records.append(scene.Points([(0.0, 0.0, 0.0)], style.INK, 6.0))
     return records + _marked(trail / (FULL * shells), "$x$", (24.0, 0.0), 0.010)
@@ -190,7 +195,7 @@ def _beads(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record]
         offset = (-20.0, 0.0) if n == 0 else (24.0, 0.0) if n == shells else (0.0, 62.0)
         records.append(scene.Label(name, pole, style.INK, style.SMALL_TEXT, offset))
     carried = _to_chain(trail, _shell(trail, shells))
-    return records + _marked(carried, "", (0.0, -30.0), 0.03)
+    return records + _marked(carried, "$x$", (0.0, -30.0), 0.03)
 
 
 def _layers(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record]:
@@ -222,9 +227,9 @@ def _layers(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record
 def _half(trail: np.ndarray, camera: Camera) -> list[scene.Record]:
     grid = _grid(0)[:17]
     around = np.linspace(0.0, FULL, 181)
-    rim = _to_rotations(_polar(np.array(np.pi - 1e-9), around))
+    rim = _to_sphere(_polar(np.pi, around))
     lines = [_to_sphere(g) for g in _graticule(0)[:2]]
-    lines += [_to_sphere(_polar(np.linspace(0.0, np.pi, 17), np.array(k * np.pi / 6.0))) for k in range(12)]
+    lines += [_to_sphere(_polar(np.linspace(0.0, np.pi, 17), k * np.pi / 6.0)) for k in range(12)]
     records: list[scene.Record] = [
         _surface(_to_sphere(grid), style.GLASS, "glass"),
         scene.Lines(joined(lines), style.GLASS_EDGE, style.HAIR, 0.6),
@@ -256,22 +261,21 @@ def _captions() -> list[scene.Record]:
 
 def _paths(turn: float, aside: float) -> Drawing:
     """R_x up to a full turn, then R_y: as it is, and moved aside by a rotation about z."""
-    # Closest together where the path passes I: beside it the logarithm moves fastest.
-    s = np.linspace(-1.0, 1.0, 301)
-    steps = FULL * (1.0 + s * np.abs(s))
+    # Closest together at full turns, where the path passes I: beside it the logarithm moves fastest.
+    turns, rest = np.divmod(np.linspace(0.0, 3.0, 361), 1.0)
+    steps = FULL * (turns + rest**2 * (3.0 - 2.0 * rest))
     through = _motion(steps)
     beside = so3.rotation("z", aside) @ through
-    shown = steps <= turn + 1e-12
-    lifts = [
-        _follow(path, start)
-        for path, start in ((through, np.zeros(3)), (beside, np.array([0.0, 0.0, aside])))
-    ]
+    shown = max(int(np.searchsorted(steps, turn + 1e-9)), 1)
+    lifts = [so3.log_along(through, np.zeros(3)), so3.log_along(beside, np.array([0.0, 0.0, aside]))]
     x = np.linspace(0.0, 3.0 * FULL, 601)
     jacobian = so3.left_jacobian(np.stack([x, 0.0 * x, 0.0 * x], axis=-1))
     smallest = np.linalg.svd(jacobian, compute_uv=False).min(axis=-1)
     camera = Camera((1.0, 0.50, 0.42), (0.0, 0.0, 0.0), 3.1)
     views = [
-        scene.View(tuple(_lift_view(lift[shown] / FULL, camera, i)), camera, (600.0 * i, 318.0, 600.0, 500.0))
+        scene.View(
+            tuple(_lift_view(lift[:shown] / FULL, camera, i)), camera, (600.0 * i, 318.0, 600.0, 500.0)
+        )
         for i, lift in enumerate(lifts)
     ]
     titles = ("through the identity", "beside the identity")
@@ -279,7 +283,7 @@ def _paths(turn: float, aside: float) -> Drawing:
         scene.Label(text, (300.0 + 600.0 * i, 856.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
         for i, text in enumerate(titles)
     ]
-    page += _smallest(x, smallest, [float(np.linalg.norm(lift[shown][-1])) for lift in lifts])
+    page += _smallest(x, smallest, [float(np.linalg.norm(lift[shown - 1])) for lift in lifts])
     steps_between = [np.linalg.norm(np.diff(lift, axis=0), axis=-1).max() for lift in lifts]
     numbers = {
         "turn": steps,
@@ -297,36 +301,16 @@ def _motion(turn: np.ndarray) -> np.ndarray:
     return so3.rotation("y", then) @ so3.rotation("x", first)
 
 
-def _follow(path: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """The logarithm of each rotation nearest to that of the one before."""
-    lift = [start]
-    for R in path[1:]:
-        lift.append(so3.log_near(R, lift[-1])[0])
-    return np.array(lift)
-
-
 def _lift_view(lift: np.ndarray, camera: Camera, which: int) -> list[scene.Record]:
-    jumps = np.flatnonzero(np.linalg.norm(np.diff(lift, axis=0), axis=-1) > 0.5) + 1
+    jumps = _jumps(lift)
     color = (style.WRONG, style.RIGHT)[which]
-    records: list[scene.Record] = [*globe(camera, alpha=0.75)]
-    for k, axis in enumerate(np.eye(3)):
-        records.append(scene.Arrow(np.zeros(3), 1.42 * axis, style.INK, 0.010))
-        records.append(beyond(f"$x_{k + 1}$", 1.42 * axis, axis, camera, size=style.SMALL_TEXT, gap=22.0))
+    names = ("$x_1$", "$x_2$", "$x_3$")
+    records = [*globe(camera, alpha=0.75), *coordinate_axes(camera, names, 1.42)]
     corner = (camera.axes[0] + camera.axes[1]) / np.sqrt(2.0)
     records.append(
-        beyond(
-            r"$|x| = 2\pi$",
-            corner,
-            camera.axes[0],
-            camera,
-            color=style.GLASS_EDGE,
-            size=style.SMALL_TEXT,
-            gap=62.0,
-        )
+        scene.Label(r"$|x| = 2\pi$", corner, style.GLASS_EDGE, style.SMALL_TEXT, (20.0, 0.0), "lc")
     )
-    for piece in np.split(lift, jumps):
-        if len(piece) > 1:
-            records.append(scene.Tube(piece, color, 0.018))
+    records += [scene.Tube(piece, color, 0.018) for piece in np.split(lift, jumps)]
     for jump in jumps:
         records.append(scene.Lines(lift[jump - 1 : jump + 1], color, 2.6, dash=(4.0, 6.0)))
         records.append(scene.Points(lift[jump - 1 : jump + 1], style.PAPER, 8.0, rim=color))

@@ -155,6 +155,39 @@ def log_near(
     return x, np.linalg.norm(x - reference, axis=-1)
 
 
+def log_along(R: ArrayLike, start: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
+    """Return a logarithm along a path of rotations, each the nearest to the one before.
+
+    It is continuous as long as the path does not pass I on a sphere |x| = 2 n pi, n >= 1.
+
+    Book: 4.6
+
+    Parameters
+    ----------
+    R : (n, 3, 3), rotation
+        The path, in steps well below a half turn.
+    start : (3,), radians
+        What the first logarithm is to be nearest to.
+    check : bool, False to trust the values
+
+    Returns
+    -------
+    x : (n, 3), radians
+
+    Raises
+    ------
+    ValueError
+        If R holds a matrix that is not a rotation, or start is not finite.
+    """
+    R = checks.rotation("so3.log_along", "R", R, 3, check)
+    x = np.empty((len(R), 3))
+    reference = checks.array("so3.log_along", "start", start, (3,), check)
+    for i, step in enumerate(R):
+        reference, _ = log_near(step, reference, check=False)
+        x[i] = reference
+    return x
+
+
 def inverse(R: ArrayLike) -> NDArray[np.float64]:
     """Return the inverse of a rotation, its transpose.
 

@@ -1,11 +1,11 @@
-"""Text placed by rule: where a label goes follows from what it names."""
+"""Named axes and labels placed by rule: where a label goes follows from what it names."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lietool.render import style
 from lietool.render.camera import Camera
-from lietool.render.scene import Label
+from lietool.render.scene import Arrow, Label, Record
 
 
 def beyond(
@@ -39,3 +39,12 @@ def beyond(
     length = float(np.linalg.norm(along))
     along = along / length if length > 1e-9 else np.array([0.0, 1.0])
     return Label(text, np.asarray(at, float), color, size, (gap * along[0], gap * along[1]))
+
+
+def coordinate_axes(camera: Camera, names: tuple[str, str, str], length: float) -> list[Record]:
+    """Return the three axes of space as dark arrows from the origin, each with its name beyond its tip."""
+    records: list[Record] = []
+    for axis, name in zip(np.eye(3), names, strict=True):
+        records.append(Arrow(np.zeros(3), length * axis, style.INK, 0.010))
+        records.append(beyond(name, length * axis, axis, camera, size=style.SMALL_TEXT, gap=22.0))
+    return records
