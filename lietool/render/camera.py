@@ -1,6 +1,7 @@
 """Cameras: from a space to the page."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import radians, tan
 
 import numpy as np
@@ -35,7 +36,7 @@ class Camera:
         """From the eye to the target, in world units."""
         return self.height / 2.0 / tan(self.fov / 2.0)
 
-    @property
+    @cached_property
     def axes(self) -> np.ndarray:
         """The camera's right, up and backward directions as rows; shape (3, 3)."""
         back = np.asarray(self.direction, float)
@@ -46,7 +47,7 @@ class Camera:
         right /= np.linalg.norm(right)
         return np.stack([right, np.cross(back, right), back])
 
-    @property
+    @cached_property
     def eye(self) -> np.ndarray:
         """Where the lens is; shape (3,)."""
         return np.asarray(self.target, float) + self.distance * self.axes[2]
@@ -134,7 +135,8 @@ def project(camera: Camera | Page, box: Box, points: ArrayLike) -> np.ndarray:
         Page x, page y, and the depth: the distance from the eye along the line of sight's axis.
     """
     points = np.asarray(points, float)
-    seen = points @ camera.view(box)[:3, :3].T + camera.view(box)[:3, 3]
+    view = camera.view(box)
+    seen = points @ view[:3, :3].T + view[:3, 3]
     clip = np.concatenate([seen, np.ones((*seen.shape[:-1], 1))], axis=-1) @ camera.projection(box).T
     ndc = clip[..., :2] / clip[..., 3:]
     page = (ndc + 1.0) / 2.0 * np.asarray(box[2:]) + np.asarray(box[:2])

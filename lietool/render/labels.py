@@ -90,7 +90,7 @@ class Store:
 
     folders: Sequence[Path] = (paths.GOLDEN / "labels",)
     strict: bool = False
-    fresh: dict[str, bytes] = field(default_factory=dict)
+    _new: dict[str, tuple[Glyphs, str]] = field(default_factory=dict, init=False)
 
     def get(self, text: str, pixels: float) -> Glyphs:
         """Return the label, from the folders, the user's cache, or new.
@@ -128,8 +128,13 @@ class Store:
                 # A disk that is full costs time, never the picture.
                 with contextlib.suppress(OSError):
                     atomic.write_bytes(kept / f"{name}.png", encode(glyphs, text))
-        self.fresh[f"{name}.png"] = encode(glyphs, text)
+        self._new[f"{name}.png"] = glyphs, text
         return glyphs
+
+    @property
+    def fresh(self) -> dict[str, bytes]:
+        """File names and contents of the labels that were asked for and that the folders do not hold."""
+        return {name: encode(glyphs, text) for name, (glyphs, text) in self._new.items()}
 
 
 @lru_cache(maxsize=512)

@@ -175,12 +175,13 @@ class Studio:
         drawing = item.figure.draw(**item.parameters)
         store = labels.Store((item.place.labels,))
         rendered = draw.render(drawing.picture, size=size, draft=draft, store=store)
+        fresh = store.fresh
         return Painted(
             rendered.image,
             drawing.numbers,
             frozenset(label.key for label in rendered.labels),
-            store.fresh,
-            tuple(dict.fromkeys(x.text for x in rendered.labels if f"{x.key}.png" in store.fresh)),
+            fresh,
+            tuple(dict.fromkeys(x.text for x in rendered.labels if f"{x.key}.png" in fresh)),
         )
 
 
