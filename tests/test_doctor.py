@@ -135,9 +135,7 @@ def test_with_neither_library_it_gives_advice_and_no_traceback(tmp_path):
         text=True,
     )
     assert done.returncode == 4 and done.stderr == ""
-    assert (
-        "renderer    NONE" in done.stdout and "libOSMesa.so.8" in done.stdout and "libEGL.so.1" in done.stdout
-    )
+    assert "renderer    NONE" in done.stdout and "libOSMesa.so.8" in done.stdout and "libEGL" in done.stdout
     assert all(command in done.stdout for command in advice.commands().values())
 
 

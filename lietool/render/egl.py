@@ -2,12 +2,14 @@
 
 import ctypes
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 
-from lietool.render import mesa
+from lietool.render import libraries, mesa
 
 NAMES = ("libEGL.so.1", "libEGL.so")
 
+_MESA, _DRIVER = ("libEGL_mesa.so.0",), ("swrast_dri.so",)
 _SOFTWARE = ("llvmpipe", "softpipe")
 # Otherwise a surfaceless display takes the first GPU that it sees.
 _FORCED = {"LIBGL_ALWAYS_SOFTWARE": "1", "GALLIUM_DRIVER": "llvmpipe"}
@@ -36,8 +38,10 @@ class Library:
 
     Parameters
     ----------
+    folders : sequence of Path, optional
+        Where to look when the system has none; `libraries.private_folders()` if not given.
     open_library : callable
-        What opens a library by its name; raises OSError when it cannot.
+        What opens a library by its name or path; raises OSError when it cannot.
 
     Raises
     ------
@@ -45,14 +49,10 @@ class Library:
         If there is no libEGL, or it knows nothing of displays without a window.
     """
 
-    def __init__(self, open_library: Callable[[str], ctypes.CDLL] = ctypes.CDLL) -> None:
-        try:
-            library = open_library(NAMES[0])
-        except OSError as first:
-            try:
-                library = open_library(NAMES[1])
-            except OSError:
-                raise first from None
+    def __init__(
+        self, folders: Sequence[Path] | None = None, open_library: libraries.Open = ctypes.CDLL
+    ) -> None:
+        library = libraries.load(NAMES, folders, open_library)
         for name, (result, *arguments) in _SIGNATURES.items():
             function = getattr(library, name)
             function.restype, function.argtypes = result, arguments
@@ -163,7 +163,12 @@ def load(software: bool) -> Loader:
     OSError
         If there is none; the message says why.
     """
-    library, failures = Library(), []
+    with mesa.environment(_private_mesa() if software else {}):
+        return _first(Library(), software)
+
+
+def _first(library: Library, software: bool) -> Loader:
+    failures: list[str] = []
     for device in [*library.devices(software), *([None] if software else [])]:
         forced = {} if device else {name: value for name, value in _FORCED.items() if name not in os.environ}
         try:
@@ -181,6 +186,24 @@ def load(software: bool) -> Loader:
     raise OSError(
         "; ".join(dict.fromkeys(failures)) or f"EGL knows no {'software' if software else 'GPU'} device"
     )
+
+
+def _private_mesa() -> dict[str, str | None]:
+    """Load the Mesa that was unpacked without root, and return the variables by which libEGL finds it."""
+    folders = libraries.private_folders()
+    folder = next((folder for folder in folders if (folder / _MESA[0]).is_file()), None)
+    if folder is None:
+        return {}
+    # libEGL opens it by its name alone, which the linker knows once the library is loaded; so does
+    # the driver with what it needs, which lies in a folder of its own in older Mesa.
+    libraries.load(_MESA, folders)
+    if (folder / "dri" / _DRIVER[0]).is_file():
+        libraries.load(_DRIVER, [folder / "dri", *folders])
+    places = {
+        "__EGL_VENDOR_LIBRARY_DIRS": folder.parents[1] / "share/glvnd/egl_vendor.d",
+        "LIBGL_DRIVERS_PATH": folder / "dri",
+    }
+    return {name: str(place) for name, place in places.items() if name not in os.environ}
 
 
 def _integers(*values: int) -> ctypes.Array[ctypes.c_int]:

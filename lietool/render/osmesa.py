@@ -1,10 +1,10 @@
 """OpenGL in memory by libOSMesa: no display, no device, no driver to choose."""
 
 import ctypes
-import re
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+
+from lietool.render import libraries
 
 NAMES = ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so", "libOSMesa.8.dylib")
 
@@ -13,29 +13,14 @@ _FORMAT, _DEPTH_BITS, _STENCIL_BITS, _ACCUM_BITS = 0x22, 0x30, 0x31, 0x32
 _PROFILE, _CORE_PROFILE = 0x33, 0x34
 _CONTEXT_MAJOR, _CONTEXT_MINOR = 0x36, 0x37
 
-Open = Callable[[str], ctypes.CDLL]
 
-
-def private_folders() -> list[Path]:
-    """Return the library folders under ``sys.prefix/sys``, where ``run`` unpacks packages without root.
-
-    Returns
-    -------
-    list of Path
-        Existing folders, in a fixed order.
-    """
-    root = Path(sys.prefix, "sys")
-    patterns = ("usr/lib/*-linux-gnu*", "lib/*-linux-gnu*", "usr/lib64", "lib64", "usr/lib")
-    return [path for pattern in patterns for path in sorted(root.glob(pattern)) if path.is_dir()]
-
-
-def load(folders: Sequence[Path] | None = None, open_library: Open = ctypes.CDLL) -> ctypes.CDLL:
+def load(folders: Sequence[Path] | None = None, open_library: libraries.Open = ctypes.CDLL) -> ctypes.CDLL:
     """Load libOSMesa from the system, else from private folders.
 
     Parameters
     ----------
     folders : sequence of Path, optional
-        Where to look when the system has none; `private_folders()` if not given.
+        Where to look when the system has none; `libraries.private_folders()` if not given.
     open_library : callable
         What opens a library by its name or path; raises OSError when it cannot.
 
@@ -49,42 +34,7 @@ def load(folders: Sequence[Path] | None = None, open_library: Open = ctypes.CDLL
     OSError
         If no copy can be loaded; the message says why the first one could not.
     """
-    folders = private_folders() if folders is None else folders
-    failures: list[OSError] = []
-    for name in NAMES:
-        try:
-            return open_library(name)
-        except OSError as error:
-            failures.append(error)
-    for folder in folders:
-        for path in (folder / name for name in NAMES):
-            if path.is_file():
-                try:
-                    return _load_with_dependencies(path, folders, open_library)
-                except OSError as error:
-                    failures.insert(0, error)
-    raise failures[0]
-
-
-def _load_with_dependencies(path: Path, folders: Sequence[Path], open_library: Open) -> ctypes.CDLL:
-    # The dynamic linker looks for dependencies in the system's folders only, but takes any library
-    # of the right soname that is already loaded. So what it misses is loaded first, by its path.
-    tried: set[str] = set()
-
-    def attempt(target: Path) -> ctypes.CDLL:
-        while True:
-            try:
-                return open_library(str(target))
-            except OSError as error:
-                missing = re.search(r"(?:^|\s)([\w.+-]+\.so[\w.]*)\b", str(error))
-                name = missing[1] if missing else ""
-                found = next((f / name for f in folders if name and (f / name).is_file()), None)
-                if found is None or name in tried:
-                    raise
-                tried.add(name)
-                attempt(found)
-
-    return attempt(path)
+    return libraries.load(NAMES, folders, open_library)
 
 
 class Loader:

@@ -13,7 +13,7 @@ from typing import NoReturn
 import pytest
 
 from lietool import cache
-from lietool.render import advice, context, egl, mesa, osmesa, probe
+from lietool.render import advice, context, egl, libraries, mesa, osmesa, probe
 
 
 def rendered(backend: str | None = None, **env: str) -> dict:
@@ -133,7 +133,7 @@ class TestNothingToRenderWith:
         with pytest.raises(OSError, match=r"libOSMesa.so.8"):
             osmesa.load([], no_library)
         with pytest.raises(OSError, match=r"libEGL.so.1"):
-            egl.Library(no_library)
+            egl.Library([], no_library)
 
     @pytest.mark.parametrize(
         ("fields", "first"),
@@ -203,13 +203,27 @@ class TestPrivateLibraries:
         with pytest.raises(OSError, match=r"libglapi.so.0"):
             osmesa.load([tmp_path], opener)
 
+    def test_libegl_is_told_where_an_unpacked_mesa_lies(self, tmp_path, monkeypatch):
+        folder = tmp_path / "usr/lib/x86_64-linux-gnu"
+        (folder / "dri").mkdir(parents=True)
+        monkeypatch.setattr(libraries, "private_folders", lambda: [folder])
+        monkeypatch.setenv("LIBGL_DRIVERS_PATH", "the user's")
+        assert egl._private_mesa() == {}
+        loaded: list[str] = []
+        monkeypatch.setattr(libraries, "load", lambda names, folders: loaded.extend(names))
+        (folder / "libEGL_mesa.so.0").touch()
+        (folder / "dri" / "swrast_dri.so").touch()
+        vendors = tmp_path / "usr/share/glvnd/egl_vendor.d"
+        assert egl._private_mesa() == {"__EGL_VENDOR_LIBRARY_DIRS": str(vendors)}
+        assert loaded == ["libEGL_mesa.so.0", "swrast_dri.so"]
+
     def test_they_lie_beside_the_interpreter(self, tmp_path, monkeypatch):
         monkeypatch.setattr(sys, "prefix", str(tmp_path))
-        assert osmesa.private_folders() == []
+        assert libraries.private_folders() == []
         folders = [tmp_path / "sys" / "usr/lib/x86_64-linux-gnu", tmp_path / "sys" / "lib/x86_64-linux-gnu"]
         for folder in folders:
             folder.mkdir(parents=True)
-        assert osmesa.private_folders()[:2] == folders
+        assert libraries.private_folders()[:2] == folders
 
 
 class TestOneContext:
