@@ -19,7 +19,6 @@ flat out vec2 v_after;
 flat out float v_half_width;
 flat out vec4 v_color_a;
 flat out vec4 v_color_b;
-noperspective out vec2 v_pixel;
 
 vec2 pixel(vec4 clip) { return (clip.xy / clip.w * 0.5 + 0.5) * viewport; }
 
@@ -42,10 +41,10 @@ void main() {
     float reach = half_width + 1.0;
     bool at_b = (gl_VertexID & 1) == 1;
     float sign_across = (gl_VertexID & 2) == 2 ? 1.0 : -1.0;
-    v_pixel = (at_b ? v_b + along * reach : v_a - along * reach) + across * sign_across * reach;
+    vec2 corner = (at_b ? v_b + along * reach : v_a - along * reach) + across * sign_across * reach;
     vec4 position = at_b ? b : a;
     vec4 clip = at_b ? clip_b : clip_a;
     vec4 lifted = projection * (position + vec4(0.0, 0.0, in_lift, 0.0));
-    vec2 ndc = v_pixel / viewport * 2.0 - 1.0;
+    vec2 ndc = corner / viewport * 2.0 - 1.0;
     gl_Position = vec4(ndc * clip.w, lifted.z / lifted.w * clip.w, clip.w);
 }

@@ -13,7 +13,7 @@ flat out vec4 v_color;
 flat out vec4 v_rim;
 flat out float v_radius;
 flat out float v_shaded;
-noperspective out vec2 v_offset;
+flat out vec2 v_center;
 void main() {
     vec4 position = view * vec4(in_position, 1.0);
     vec4 clip = projection * position;
@@ -23,7 +23,7 @@ void main() {
     v_radius = in_radius * per_side;
     v_shaded = in_shaded;
     vec2 corner = vec2((gl_VertexID & 1) == 1 ? 1.0 : -1.0, (gl_VertexID & 2) == 2 ? 1.0 : -1.0);
-    v_offset = corner * (v_radius + 1.0);
-    vec2 ndc = clip.xy / clip.w + v_offset * 2.0 / viewport;
+    v_center = (clip.xy / clip.w * 0.5 + 0.5) * viewport;
+    vec2 ndc = clip.xy / clip.w + corner * (v_radius + 1.0) * 2.0 / viewport;
     gl_Position = vec4(ndc * clip.w, lifted.z / lifted.w * clip.w, clip.w);
 }
