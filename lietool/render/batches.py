@@ -79,6 +79,7 @@ def batches(record: Record, lens: Lens) -> list[Batch]:
 
 @batches.register
 def _(record: Label, lens: Lens) -> list[Batch]:
+    _finite(record.position, "Label.position")
     return []
 
 
@@ -184,7 +185,7 @@ def _finite(values: object, name: str) -> np.ndarray:
     array = np.asarray(values, float)
     if not np.isfinite(array).all():
         where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-        raise ValueError(f"render: {name} must be finite; got {array[where]} at index {where}")
+        raise ValueError(f"draw.render: {name} must be finite; got {array[where]} at index {where}")
     return array
 
 
@@ -207,6 +208,8 @@ def _dashed(
     points: np.ndarray, color: np.ndarray, dash: tuple[float, float], lens: Lens
 ) -> tuple[np.ndarray, np.ndarray]:
     stroke, gap = dash
+    if not (stroke >= 0.0 and gap >= 0.0 and stroke + gap > 0.0):
+        raise ValueError(f"draw.render: Lines.dash must be two lengths, not both 0; got {dash}")
     out_points, out_color = [], []
     for s in _runs(points):
         page = project(lens.camera, lens.box, points[s])[:, :2]

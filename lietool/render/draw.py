@@ -93,7 +93,7 @@ def render(
     """
     width, height = size or picture.size
     if not (1 <= width <= LARGEST and 1 <= height <= LARGEST):
-        raise ValueError(f"size must be 1 to {LARGEST} pixels each way; got {width}x{height}")
+        raise ValueError(f"draw.render: size must be 1 to {LARGEST} pixels each way; got {width}x{height}")
     gl = context.get(backend).gl
     unit = min(width / picture.size[0], height / picture.size[1])
     corner = ((width - unit * picture.size[0]) / 2.0, (height - unit * picture.size[1]) / 2.0)

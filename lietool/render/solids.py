@@ -102,7 +102,9 @@ def sphere(radius: float = 1.0, center: ArrayLike = (0.0, 0.0, 0.0), rings: int 
     normals = np.stack(
         [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta) + 0.0 * phi], axis=-1
     ).reshape(-1, 3)
-    return radius * normals + np.asarray(center, float), grid_faces(rings + 1, 2 * rings + 1), normals
+    # From pole to pole first and then around turns the grid's faces inwards.
+    faces = grid_faces(rings + 1, 2 * rings + 1)[:, ::-1]
+    return radius * normals + np.asarray(center, float), faces, normals
 
 
 def transported_frames(points: np.ndarray, closed: bool) -> np.ndarray:
@@ -112,6 +114,9 @@ def transported_frames(points: np.ndarray, closed: bool) -> np.ndarray:
     before = np.concatenate([steps[-1:] if closed else steps[:1], steps])
     after = np.concatenate([steps, steps[:1] if closed else steps[-1:]])
     tangents = before + after
+    # Where the polyline turns straight back, it passes through a direction across it.
+    for i in np.flatnonzero(np.linalg.norm(tangents, axis=-1) < 1e-9):
+        tangents[i] = frame_along(before[i])[:, 0]
     tangents /= np.linalg.norm(tangents, axis=-1, keepdims=True)
     # Any frames along the curve, each then turned by what the transport of the one before differs from it.
     u = np.cross(np.eye(3)[np.argmin(np.abs(tangents), axis=-1)], tangents)
@@ -132,7 +137,7 @@ def tube(points: ArrayLike, radius: float, closed: bool = False, segments: int =
     Parameters
     ----------
     points : array_like, shape (n, 3)
-        Consecutive points must differ; repeated ones are left out.
+        At least one; repeated ones are left out.
     radius : float
     closed : bool
         Join the last point to the first; then no ends.
@@ -159,7 +164,6 @@ def tube(points: ArrayLike, radius: float, closed: bool = False, segments: int =
     ring = np.cos(angle)[:, None] * frames[:, None, :, 0] + np.sin(angle)[:, None] * frames[:, None, :, 1]
     normals = scale[:, None, None] * ring + (lean[:, None] * frames[:, :, 2])[:, None, :]
     vertices = points[:, None, :] + radius * normals
-    # Walking along the tube after walking around it turns the faces inwards; the other order is outwards.
     faces = grid_faces(len(points), segments + 1)
     return vertices.reshape(-1, 3), faces, normals.reshape(-1, 3)
 
