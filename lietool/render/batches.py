@@ -212,8 +212,10 @@ def _dashed(
         raise ValueError(f"draw.render: Lines.dash must be two lengths, not both 0; got {dash}")
     out_points, out_color = [], []
     for s in _runs(points):
-        page = project(lens.camera, lens.box, points[s])[:, :2]
-        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(page, axis=0), axis=-1))])
+        page = project(lens.camera, lens.box, points[s])
+        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(page[:, :2], axis=0), axis=-1))])
+        # What is linear on the page is a quotient in space: the far half of a segment is shorter there.
+        weight = 1.0 / page[:, 2] if isinstance(lens.camera, Camera) else np.ones(len(page))
         if length[-1] == 0.0:
             continue
         # Whole strokes: both ends of the line end in ink.
@@ -224,8 +226,10 @@ def _dashed(
             last = first + stroke * scale
             inside = length[(length > first) & (length < last)]
             at = np.concatenate([[first], inside, [last], [np.nan]])
+            scaled = np.interp(at, length, weight)
             for source, out in ((points[s], out_points), (color[s], out_color)):
-                out.append(np.stack([np.interp(at, length, column) for column in source.T], axis=-1))
+                columns = [np.interp(at, length, column * weight) / scaled for column in source.T]
+                out.append(np.stack(columns, axis=-1))
     if not out_points:
         return points[:0], color[:0]
     return np.concatenate(out_points), np.concatenate(out_color)

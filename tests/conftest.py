@@ -1,0 +1,102 @@
+"""One environment for all tests, what a missing renderer means, and every plate drawn once."""
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lietool import figure, paths
+from lietool.declaration import Drawing
+from lietool.render import context, draw
+from lietool.render.compose import PlacedLabel
+from lietool.verbs import _studio
+
+_REQUIRE = "LIETOOL_REQUIRE_RENDERER"
+# What the caller set for other purposes: no test may pass or fail by it.
+_FOREIGN = ("GALLIUM_DRIVER", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH", "SOURCE_DATE_EPOCH")
+
+
+def pytest_configure() -> None:
+    """Forget the caller's settings before figures are listed, which happens before any fixture runs."""
+    for name in list(os.environ):
+        if name in _FOREIGN or (name.startswith("LIETOOL_") and name != _REQUIRE):
+            del os.environ[name]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Compiled shaders and labels of this session, shared by all the processes that tests start."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("LIETOOL_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_setup() -> Iterator[None]:
+    """Skip what a fixture cannot render, or fail it where a renderer is required."""
+    return (yield from _without_renderer())
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call() -> Iterator[None]:
+    """Skip a test that cannot render, or fail it where a renderer is required."""
+    return (yield from _without_renderer())
+
+
+def _without_renderer() -> Iterator[None]:
+    try:
+        return (yield)
+    except context.NoRendererError as error:
+        reason = str(error).splitlines()[0]
+        if os.environ.get(_REQUIRE) == "1":
+            pytest.fail(f"{_REQUIRE}=1, but {reason}", pytrace=False)
+        pytest.skip(reason)
+
+
+@dataclass(frozen=True, eq=False)
+class Built:
+    """A plate as `figures verify` sees it, and what it was made of."""
+
+    item: _studio.Item
+    drawing: Drawing
+    painted: _studio.Painted
+    labels: tuple[PlacedLabel, ...]
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """The numbers shown, as arrays where they are arrays."""
+        return dict(self.painted.numbers)
+
+
+def build(item: _studio.Item) -> Built:
+    """Paint a plate by the verbs' own code, and keep what passes between its parts."""
+    seen: list[tuple[Any, draw.Rendered]] = []
+    render = draw.render
+
+    def watched(picture: Any, **options: Any) -> draw.Rendered:
+        seen.append((picture, render(picture, **options)))
+        return seen[-1][1]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(draw, "render", watched)
+        painted = _studio.Studio().paint(item)
+    ((picture, rendered),) = seen
+    return Built(item, Drawing(picture, painted.numbers), painted, rendered.labels)
+
+
+@pytest.fixture(scope="session")
+def plate() -> Callable[[str], Built]:
+    """Each of our plates by its id: drawn once, when it is first asked for."""
+    commands = figure.plates((paths.FIGURES,))
+    return cache(lambda plate_id: build(_studio.Item(plate_id, commands[plate_id])))
+
+
+@pytest.fixture
+def repaint() -> Callable[[str], np.ndarray]:
+    """The picture of a plate, drawn anew."""
+    commands = figure.plates((paths.FIGURES,))
+    return lambda plate_id: build(_studio.Item(plate_id, commands[plate_id])).painted.image
