@@ -12,6 +12,7 @@ from lietool.render.camera import Camera, Page
 from lietool.render.marks import beyond
 from lietool.render.plot import Axes, number
 
+_SINGULAR = 1e-9
 NAMES = (r"\theta_1", r"\theta_2", r"\theta_3")
 
 
@@ -22,26 +23,28 @@ NAMES = (r"\theta_1", r"\theta_2", r"\theta_3")
             equations=("2.21", "2.22"),
             caption=(
                 "The rotation R_z(theta_3) R_y(theta_2) R_x(theta_1) as three nested rings, each turning "
-                "about an axle in the next. Left: three independent axes. Right: at theta_2 = 90 degrees the "
-                "innermost axis has come to lie along the outermost, and one freedom is lost."
+                "about an axle in the next. Left: three independent axes. Right: at theta_2 = -90 degrees "
+                "the innermost axis has come to lie along the outermost, and one freedom is lost. Below: the "
+                "smallest singular value of the Jacobian of the Euler map."
             ),
         ),
         "GL2": Plate(
             title="Euler angles that jump, and why",
             equations=("2.22", "2.23"),
             caption=(
-                "Above: the x-y-x Euler angles of R_z(theta). Two of them jump by 180 degrees as theta "
-                "passes through 0, although the rotation hardly moves. Below: the smallest singular value of "
-                "the Jacobian of the Euler map; it is zero at theta_2 = 0 for x-y-x, at 90 degrees for x-y-z."
+                "Above: the x-y-x Euler angles of R_z(theta), with theta_2 from 0 to 180 degrees. The other "
+                "two jump by 180 degrees as theta passes through 0, although the rotation hardly moves; with "
+                "theta_2 < 0 (dashed) they need not. Below: the smallest singular value of the Jacobian of "
+                "the Euler map, 0 at 0 and 180 degrees for x-y-x, at 90 and -90 degrees for x-y-z."
             ),
-            params={"view": "angles"},
+            params={"view": "angles", "theta2": 35.0},
         ),
     },
     time=Time("theta2", 0.0, -90.0),
 )
 def gimbal(
     view: Annotated[Literal["rings", "angles"], Param("the rings, or the angles as curves")] = "rings",
-    theta1: Annotated[float, Param("turn of the inner ring about x", "deg", -360.0, 360.0)] = 30.0,
+    theta1: Annotated[float, Param("turn of the inner ring about x", "deg", -360.0, 360.0)] = 12.0,
     theta2: Annotated[
         float,
         Param(
@@ -53,26 +56,27 @@ def gimbal(
     """Gimbal lock: two of the three axes of the Euler angles coincide, and the angles jump.
 
     What to look for: on the left the red, green and blue axes point in three
-    directions; on the right red and blue share one line, so that turning the
-    inner ring only undoes turning the outer one. The smallest singular value
-    says how near the lock is: 0 there. With --view angles it is drawn over
-    theta_2, below the angles of a rotation that passes through the lock.
+    directions; on the right red and blue share one line (they are drawn side by
+    side), so that turning the inner ring does what turning the outer one does.
+    The smallest singular value says how near the lock is: 0 there. With
+    --view angles it is drawn over theta_2, below the angles of a rotation that
+    passes through the lock.
     """
     angles = np.deg2rad([theta1, theta2, theta3])
     return _rings(angles) if view == "rings" else _curves(float(angles[1]))
 
 
 def _rings(angles: np.ndarray) -> Drawing:
-    locked = np.array([angles[0], np.copysign(np.pi / 2, angles[1]), angles[2]])
+    locked = np.array([angles[0], np.pi / 2 if angles[1] > 0.0 else -np.pi / 2, angles[2]])
     both = np.stack([angles, locked])
     axes = euler.axes(both, "xyz")
     smallest = euler.singular_values(both, "xyz").min(axis=-1)
-    camera = Camera((1.0, 0.62, 0.92), (0.0, 0.0, 0.08), 3.12)
+    camera = Camera((1.0, 0.62, 0.92), (0.0, 0.0, 0.0), 2.92)
     views = []
-    for i, title in enumerate(("ordinary angles", "at lock")):
+    for i in range(2):
         records = [*_gimbal(both[i]), *_axes(axes[i], camera)]
-        views.append(scene.View(tuple(records), camera, (600.0 * i, 136.0, 600.0, 690.0)))
-        views.append(scene.View(tuple(_legend(300.0 + 600.0 * i, title, both[i], smallest[i]))))
+        views.append(scene.View(tuple(records), camera, (600.0 * i, 122.0, 600.0, 690.0)))
+        views.append(scene.View(tuple(_legend(300.0 + 600.0 * i, both[i], float(smallest[i])))))
     views.append(scene.View((scene.Lines([(600, 60, 0), (600, 840, 0)], style.RULE, style.HAIR),)))
     numbers = {
         "angles": both,
@@ -83,19 +87,15 @@ def _rings(angles: np.ndarray) -> Drawing:
     return Drawing(scene.Picture(tuple(views)), numbers)
 
 
-def _legend(x: float, title: str, angles: np.ndarray, smallest: float) -> list[scene.Record]:
+def _legend(x: float, angles: np.ndarray, smallest: float) -> list[scene.Record]:
+    title = "at lock" if smallest < _SINGULAR else "three independent axes"
     degrees = [number(a, 1) for a in np.rad2deg(angles)]
     values = r",\;\, ".join(rf"{n} = {d}^{{\circ}}" for n, d in zip(NAMES, degrees, strict=True))
+    sigma = rf"$\sigma_{{\min}} = {number(smallest, 3)}$"
     return [
         scene.Label(title, (x, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn"),
-        scene.Label(f"${values}$", (x, 104.0, 0.0), style.INK, style.SMALL_TEXT, anchor="cn"),
-        scene.Label(
-            rf"$\sigma_{{\min}} = {number(smallest)}$",
-            (x, 58.0, 0.0),
-            style.INK,
-            style.SMALL_TEXT,
-            anchor="cn",
-        ),
+        scene.Label(f"${values}$", (x, 92.0, 0.0), style.INK, style.SMALL_TEXT, anchor="cn"),
+        scene.Label(sigma, (x, 40.0, 0.0), style.INK, style.SMALL_TEXT, anchor="cn"),
     ]
 
 
@@ -111,14 +111,14 @@ def _gimbal(angles: np.ndarray) -> list[scene.Record]:
     ]
     for axis, near, far, color in (
         (outer[:, 2], 0.98, 1.16, style.INK),
-        (outer[:, 1], 0.78, 0.92, style.INK),
-        (middle[:, 0], 0.61, 0.75, style.INK),
+        (outer[:, 1], 0.78, 0.85, style.INK),
+        (middle[:, 0], 0.61, 0.68, style.INK),
     ):
         records += [scene.Tube([s * near * axis, s * far * axis], color, 0.035) for s in (-1.0, 1.0)]
     vertices, faces, side = shapes.letter_solid()
-    records.append(scene.Tube([0.36 * inner[:, 2], 0.52 * inner[:, 2]], style.INK, 0.025))
-    scaled = 0.74 * vertices @ inner.T
-    for kind, color in enumerate((style.ARC, "#b8b2a4", style.BONE)):
+    records.append(scene.Tube([0.31 * inner[:, 2], 0.52 * inner[:, 2]], style.INK, 0.025))
+    scaled = 0.64 * vertices @ inner.T
+    for kind, color in enumerate((style.ARC, style.GREYS[0], style.BONE)):
         records.append(scene.Surface(scaled, faces[side == kind], color))
     return records
 
@@ -129,24 +129,21 @@ def _ring(R: np.ndarray, radius: float, color: str) -> scene.Surface:
 
 
 def _axes(axes: np.ndarray, camera: Camera) -> list[scene.Record]:
-    """The three axes of rotation, each with its turn; two that coincide share a line, with both names."""
-    together = abs(axes[0] @ axes[2]) > 1.0 - 1e-9
+    """The three axes of rotation, each with its turn; two that coincide run side by side, with one name."""
+    along = float(axes[0] @ axes[2])
+    locked, near = abs(along) > 1.0 - 1e-12, along > np.cos(np.deg2rad(14.0))
+    # At lock the inner axis is drawn beside the outer one, in the direction that it really has.
+    aside = 0.045 * camera.axes[0] if locked else np.zeros(3)
     records: list[scene.Record] = []
-    for k, reach in ((0, 1.26), (1, 1.26), (2, 1.56)):
+    for k, reach, shift in ((0, 1.42 if locked else 1.26, -aside), (1, 1.26, 0.0 * aside), (2, 1.42, aside)):
         axis, color = axes[k], style.AXES[k]
-        if together and k == 0:
-            continue
-        names = (0, 2) if together and k == 2 else (k,)
-        records += [
-            scene.Lines([-reach * axis, reach * axis], color, style.EDGE),
-            scene.Arrow((reach - 0.34) * axis, reach * axis, color, 0.02),
-            beyond("$" + r",\,".join(NAMES[n] for n in names) + "$", reach * axis, axis, camera),
-        ]
-        records += _turn((reach - 0.26) * axis, axis, color, camera)
-        if together and k == 2:
-            records += _turn((reach - 0.47) * axis, axes[0], style.AXIS_X, camera)
-            ends = np.linspace(-reach, reach, 24)[:, None] * axis
-            records += [scene.Tube(ends[i : i + 2], style.AXES[i % 4], 0.02) for i in range(0, 22, 2)]
+        line = np.stack([-reach * axis, reach * axis]) + shift
+        records.append(scene.Lines(line, color, style.CURVE if locked and k != 1 else style.EDGE))
+        records.append(scene.Arrow((reach - 0.26) * axis + shift, line[1], color, 0.02))
+        records += _turn((reach - (0.42 if locked and k == 0 else 0.26)) * axis, axis, color, camera)
+        if not (near and k == 0):
+            text = rf"${NAMES[0]},\,{NAMES[2]}$" if near and k == 2 else f"${NAMES[k]}$"
+            records.append(beyond(text, reach * axis, axis, camera))
     return records
 
 
@@ -184,52 +181,55 @@ def _degree_ticks(step: int, last: int = 180) -> list[tuple[float, str]]:
 
 
 def _jump(theta: np.ndarray, angles: np.ndarray, marked: float, here: np.ndarray) -> list[scene.Record]:
-    axes = Axes((150.0, 500.0, 880.0, 270.0), (-180.0, 180.0), (-100.0, 190.0))
+    axes = Axes((150.0, 470.0, 920.0, 310.0), (-180.0, 180.0), (-190.0, 190.0))
     title = rf"$R_x({NAMES[2]})\,R_y({NAMES[1]})\,R_x({NAMES[0]}) = R_z(\theta)$"
-    records = axes.frame(_degree_ticks(90), _degree_ticks(90)[1:], r"$\theta$", title, title_size=style.TEXT)
-    records.append(axes.vertical(0.0, style.MUTED))
+    records = axes.frame(_degree_ticks(90), _degree_ticks(90), r"$\theta$", title)
     x, y = np.rad2deg(theta), np.rad2deg(angles)
     middle = len(x) // 2
-    for k in (1, 0, 2):
-        color = style.AXES[k]
-        records.append(axes.curve(np.insert(x, middle, np.nan), np.insert(y[:, k], middle, np.nan), color))
-        # The ends of a jump: neither belongs to the curve.
-        if abs(y[middle, k] - y[middle - 1, k]) > 90.0:
-            records.append(axes.dots([0.0, 0.0], y[[middle - 1, middle], k], style.INK, hollow=True))
-        name = f"${NAMES[k]}$"
-        records.append(
-            scene.Label(name, axes.at(180.0, y[-1, k]), color, style.TEXT, (16.0, 0.0), "lc", halo=False)
-        )
+    # The other solution on the left, which goes on smoothly through 0.
+    records.append(axes.curve([-180.0, 0.0], [-180.0, 0.0], style.AXIS_Y, style.EDGE, (8.0, 7.0)))
+    for k, dash in ((1, None), (0, None), (2, (16.0, 7.0))):
+        for half in (slice(0, middle), slice(middle, None)):
+            ends = x[half], y[half, k]
+            records.append(axes.curve(*ends, style.AXES[k], style.CURVE + 0.6, dash))
+    for k, aside in ((0, -7.0), (2, 7.0)):
+        start, end = axes.at([0.0, 0.0], y[[middle - 1, middle], k]) + np.array([aside, 0.0, 0.0])
+        if abs(end[1] - start[1]) > 1.0:
+            records.append(scene.Arrow(start, end, style.AXES[k], 1.6, 4.2))
     across = float(np.abs(y[middle] - y[middle - 1]).max())
-    text = rf"a jump of ${number(across, 0)}^{{\circ}}$"
-    records.append(scene.Label(text, axes.at(0.0, -45.0), style.INK, style.SMALL_TEXT, (16.0, 0.0), "lc"))
-    if marked:
-        at = np.rad2deg(marked)
-        records.append(axes.vertical(at, style.RULE, dash=None))
-        records += [
-            axes.dots(at, value, color) for value, color in zip(np.rad2deg(here), style.AXES, strict=True)
-        ]
-    return records
+    jump = rf"a jump of ${number(across, 0)}^{{\circ}}$"
+    records.append(scene.Label(jump, axes.at(28.0, 90.0), style.INK, style.SMALL_TEXT, (0.0, 12.0), "rb"))
+    for k, place in ((0, 152.0), (1, 114.0), (2, 152.0)):
+        for at in (-place, place):
+            where = axes.at(at, np.interp(at, x, y[:, k]))
+            records.append(
+                scene.Label(f"${NAMES[k]}$", where, style.AXES_TEXT[k], style.TEXT, (0.0, 12.0), "cb")
+            )
+    determined = np.abs(np.sin(marked)) > _SINGULAR
+    shown = [k for k in range(3) if determined or k == 1]
+    records.append(axes.vertical(float(np.rad2deg(marked)), style.MUTED, dash=None))
+    return records + [axes.dots(np.rad2deg(marked), np.rad2deg(here[k]), style.AXES[k], 9.0) for k in shown]
 
 
 def _singular(second: np.ndarray, smallest: dict[str, np.ndarray], marked: float) -> list[scene.Record]:
-    axes = Axes((150.0, 100.0, 880.0, 250.0), (-180.0, 180.0), (0.0, 1.1))
-    title = r"smallest singular value of the Jacobian"
+    axes = Axes((150.0, 80.0, 920.0, 220.0), (-180.0, 180.0), (0.0, 1.1))
     records = axes.frame(
         _degree_ticks(90),
-        [(0.0, "$0$"), (0.5, "$0.5$"), (1.0, "$1$")],
+        [(0.0, "$0$"), (1.0, "$1$")],
         f"${NAMES[1]}$",
-        title,
-        title_size=style.TEXT,
+        "smallest singular value of the Jacobian",
     )
     x = np.rad2deg(second)
-    for convention, color, dash in (("xyz", style.MUTED, (10.0, 7.0)), ("xyx", style.INK, None)):
-        records.append(axes.curve(x, smallest[convention], color, dash=dash))
-        records.append(axes.dots(x[smallest[convention] < 1e-9], 0.0, color))
-    records.append(scene.Label("x-y-x", axes.at(-90.0, 1.0), style.INK, style.SMALL_TEXT, (0.0, 14.0), "cb"))
-    records.append(scene.Label("x-y-z", axes.at(0.0, 1.0), style.MUTED, style.SMALL_TEXT, (0.0, 14.0), "cb"))
-    if marked:
-        value = float(np.interp(abs(marked), second, smallest["xyx"]))
-        records.append(axes.vertical(abs(float(np.rad2deg(marked))), style.RULE, dash=None))
-        records.append(axes.dots(abs(float(np.rad2deg(marked))), value, style.AXIS_Y))
+    for convention, color, dash, at in (
+        ("xyz", style.MUTED, (10.0, 7.0), 0.0),
+        ("xyx", style.INK, None, -90.0),
+    ):
+        values = smallest[convention]
+        records.append(axes.curve(x, values, color, dash=dash))
+        records.append(axes.dots(x[values < _SINGULAR], 0.0, color))
+        name = "-".join(convention)
+        records.append(scene.Label(name, axes.at(at, 1.0), color, style.SMALL_TEXT, (0.0, -32.0), "ct"))
+    here = abs(float(np.rad2deg(marked)))
+    records.append(axes.vertical(here, style.MUTED, dash=None))
+    records.append(axes.dots(here, float(np.interp(here, x, smallest["xyx"])), style.AXIS_Y, 9.0))
     return records

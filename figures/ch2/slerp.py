@@ -13,6 +13,8 @@ from lietool.render.camera import Camera
 from lietool.render.globe import globe, joined
 
 Quaternion = tuple[float, float, float, float]
+# Nearer than this to another, in radians of arc, a point goes without a name of its own.
+_CLOSE = 0.2
 
 
 @figure(
@@ -22,8 +24,9 @@ Quaternion = tuple[float, float, float, float]
             equations=("2.31", "2.32", "2.33", "2.34"),
             caption=(
                 "The plane Im H of imaginary quaternions touches the unit sphere at 1. The exponential map "
-                "lays the straight line from 0 to theta u onto the great arc from q0 to q1: equal steps "
-                "on the line become equal arcs on the sphere, which is slerp."
+                "lays the straight line from 0 to theta u onto the great arc from q0 to q1, as a thread is "
+                "wound onto a wheel (dashed): equal steps on the line become equal arcs, which is slerp. "
+                "The sphere is a slice of S^3."
             ),
         )
     },
@@ -31,9 +34,9 @@ Quaternion = tuple[float, float, float, float]
 )
 def slerp(
     q0: Annotated[Quaternion, Param("start (w, x, y, z), brought to length 1")] = (1.0, 0.0, 0.0, 0.0),
-    q1: Annotated[Quaternion, Param("end (w, x, y, z), brought to length 1")] = (0.0, 0.36, 0.48, 0.8),
-    steps: Annotated[int, Param("equal steps from start to end", low=1, high=60)] = 8,
-    t: Annotated[float, Param("the moment that is marked", low=0.0, high=1.0)] = 0.625,
+    q1: Annotated[Quaternion, Param("end (w, x, y, z), brought to length 1")] = (-0.26, 0.35, 0.46, 0.77),
+    steps: Annotated[int, Param("equal steps from start to end", low=1, high=60)] = 6,
+    t: Annotated[float, Param("the moment that is marked", low=0.0, high=1.0)] = 0.6,
 ) -> Drawing:
     """Slerp as the exponential map: equal steps on a tangent line become equal arcs on the sphere.
 
@@ -103,11 +106,11 @@ class _Shown:
 
 
 def _picture(s: _Shown) -> scene.Picture:
-    reach = max(1.5, s.theta + 0.32)
+    reach = _reach(s.theta)
     left = -1.25
     height = max(2.7, (reach - left) * 0.86)
     camera = Camera((0.30, -1.0, 0.42), ((reach + left) / 2.0, 0.0, 0.12), height)
-    records = [*_plane(reach), *globe(camera), *_sector(s), *_curves(s), *_names(s, camera)]
+    records = [*_plane(reach), *globe(camera), *_sector(s), *_curves(s), *_names(s)]
     return scene.Picture((scene.View(tuple(records), camera), scene.View(tuple(_equations(s.at_one)))))
 
 
@@ -118,9 +121,14 @@ def _equations(at_one: bool) -> list[scene.Record]:
         rf"$\mathrm{{slerp}}(q_0, q_1; t) = \exp(t\theta u){moved}$",
     ]
     return [
-        scene.Label(text, (1140.0, 150.0 - 54.0 * i, 0.0), style.INK, style.SMALL_TEXT + 2.0, anchor="rn")
+        scene.Label(text, (1150.0, 130.0 - 58.0 * i, 0.0), style.INK, style.SMALL_TEXT, anchor="rn")
         for i, text in enumerate(lines)
     ]
+
+
+def _reach(theta: float) -> float:
+    """Where the drawn part of the tangent plane ends."""
+    return max(1.5, theta + 0.30)
 
 
 def _plane(reach: float) -> list[scene.Record]:
@@ -130,7 +138,7 @@ def _plane(reach: float) -> list[scene.Record]:
     grid = [np.array([[x, -y, 1.0], [x, y, 1.0]]) for x in np.arange(-0.5, x1, 0.25)]
     grid += [np.array([[x0, v, 1.0], [x1, v, 1.0]]) for v in np.arange(-0.5, 0.51, 0.25)]
     return [
-        scene.Surface(corners, [[0, 1, 2], [0, 2, 3]], style.ALGEBRA, material="flat", alpha=0.10),
+        scene.Surface(corners, [[0, 1, 2], [0, 2, 3]], style.ALGEBRA, material="flat", alpha=0.06),
         scene.Lines(joined(grid), style.ALGEBRA, style.HAIR, 0.22),
         scene.Lines(np.concatenate([corners, corners[:1]]), style.ALGEBRA, style.THIN, 0.7),
     ]
@@ -159,44 +167,62 @@ def _on_line(x: ArrayLike) -> np.ndarray:
 
 
 def _curves(s: _Shown) -> list[scene.Record]:
-    """The straight line above, the arc below, and which point goes where."""
-    pairs = joined(np.stack([a, b]) for a, b in zip(s.line[1:], s.arc[1:], strict=True))
-    records: list[scene.Record] = [scene.Lines(pairs, style.MUTED, style.THIN, 0.8, dash=(5.0, 6.0))]
-    if s.theta > 1e-12:
-        tip = _on_line(s.theta + 0.16)
+    """The straight line above, the arc below, and how the line is laid onto the arc."""
+    wraps = [_wrap(x) for x in s.line[1:, 0] if x > 1e-9]
+    ends = np.stack([_on_line(-0.75), _on_line(_reach(s.theta))])
+    records: list[scene.Record] = [scene.Lines(ends, style.ALGEBRA, style.THIN)]
+    if wraps:
         records += [
-            scene.Arrow(_on_line(0.0), tip, style.ALGEBRA, 0.012),
-            scene.Tube(1.016 * s.curve, style.ARC, 0.016),
+            scene.Lines(joined(wraps), style.MUTED, style.THIN, 0.8, dash=(5.0, 6.0)),
+            scene.Tube(s.line, style.ALGEBRA, 0.013),
+            scene.Tube(1.006 * s.curve, style.ARC, 0.015),
         ]
     return [
         *records,
-        scene.Points(s.line, style.ALGEBRA, 8.0),
-        scene.Points(1.016 * s.arc, style.ARC, 8.0),
-        scene.Lines(np.stack([s.marked_line, s.marked]), style.INK, style.EDGE),
+        scene.Points(s.line, style.ALGEBRA, 7.5),
+        scene.Points(1.006 * s.arc, style.ARC, 7.5),
+        scene.Lines(_wrap(float(s.marked_line[0])), style.INK, style.EDGE),
         scene.Points([s.marked_line], style.ALGEBRA, 12.5, rim=style.PAPER),
-        scene.Points([1.016 * s.marked], style.ARC, 12.5, rim=style.PAPER),
+        scene.Points([1.006 * s.marked], style.ARC, 12.5, rim=style.PAPER),
     ]
 
 
-def _names(s: _Shown, camera: Camera) -> list[scene.Record]:
-    q0 = "" if s.at_one else r"\,q_0"
+def _wrap(x: float) -> np.ndarray:
+    """The way of a point of the line, at distance x, while the line is wound onto the great circle."""
+    wound = np.linspace(0.0, x, 41)
+    sine, cosine = np.sin(wound), np.cos(wound)
+    return np.stack([sine + (x - wound) * cosine, 0.0 * wound, cosine - (x - wound) * sine], axis=-1)
+
+
+def _names(s: _Shown) -> list[scene.Record]:
+    """Names of the ends, and of the marked point where that is not one of them."""
+    moved = "" if s.at_one else r"\,q_0"
+    plane = rf"$\mathrm{{Im}}\,\mathrm{{\mathbb{{H}}}}{moved}$"
     start = r"$1 = q_0$" if s.at_one else r"$q_0$"
-    middle = 0.40 * s.curve[round(s.t * 80)]
-    # Below the spoke: across it, clockwise.
-    x, _, z = s.marked
-    below = 0.56 * s.marked + 0.13 * np.array([z, 0.0, -x])
-    return [
-        scene.Label(
-            rf"$\mathrm{{Im}}\,\mathrm{{\mathbb{{H}}}}{q0}$",
-            (-0.72, -0.62, 1.0),
-            style.ALGEBRA_TEXT,
-            offset=(-4, -10),
-            anchor="lt",
-        ),
-        scene.Label(start, s.line[0], style.INK, offset=(-10, 22), anchor="rb"),
-        scene.Label(rf"$\theta u{q0}$", s.line[-1], style.ALGEBRA_TEXT, offset=(0, 22), anchor="cb"),
-        scene.Label(rf"$t\theta u{q0}$", s.marked_line, style.ALGEBRA_TEXT, offset=(0, 24), anchor="cb"),
-        scene.Label(rf"$\exp(t\theta u){q0}$", below, style.ARC_TEXT, anchor="lt"),
-        scene.Label(r"$q_1$", s.arc[-1], style.INK, offset=(20, -8), anchor="lt"),
-        scene.Label(r"$t\theta$", middle, style.ARC_TEXT, style.SMALL_TEXT),
+    blue, dark = style.ALGEBRA_TEXT, style.ARC_TEXT
+    names: list[scene.Record] = [
+        scene.Label(plane, (-0.75, 0.62, 1.0), blue, offset=(4.0, 12.0), anchor="lb"),
+        scene.Label(start, s.line[0], style.INK, offset=(-14.0, 14.0), anchor="rb"),
     ]
+    at, rest = s.t * s.theta, (1.0 - s.t) * s.theta
+    if rest > _CLOSE:
+        names.append(scene.Label(rf"$\theta u{moved}$", s.line[-1], blue, offset=(0.0, 22.0), anchor="cb"))
+        names.append(scene.Label(r"$q_1$", s.arc[-1], style.INK, offset=(20.0, -8.0), anchor="lt"))
+    if at > _CLOSE:
+        names += [
+            scene.Label(rf"$t\theta u{moved}$", s.marked_line, blue, offset=(0.0, 24.0), anchor="cb"),
+            _beside_spoke(rf"$\exp(t\theta u){moved}$", s.marked, at),
+            scene.Label(r"$t\theta$", 0.41 * s.curve[round(s.t * 80)], dark, style.SMALL_TEXT),
+        ]
+    return names
+
+
+def _beside_spoke(text: str, marked: np.ndarray, angle: float) -> scene.Label:
+    """The name of the marked point, where neither the spoke nor the arc runs through it."""
+    if angle < 0.9:
+        where, offset, anchor = 0.55 * marked, (18.0, 0.0), "lc"
+    elif angle < np.pi / 2:
+        where, offset, anchor = marked, (-46.0, 6.0), "rb"
+    else:
+        where, offset, anchor = marked, (-20.0, -12.0), "rt"
+    return scene.Label(text, where, style.ARC_TEXT, style.TEXT, offset, anchor)

@@ -9,9 +9,9 @@ from lietool.figure import Drawing, Param, Plate, Time, figure
 from lietool.lie import quaternion, so3
 from lietool.render import scene, solids, style
 from lietool.render.camera import Camera
-from lietool.render.globe import globe, joined
-from lietool.render.marks import coordinate_axes
-from lietool.render.plot import Axes, number
+from lietool.render.globe import joined, jumps
+
+from . import _exp_paths
 
 FULL = 2.0 * np.pi
 
@@ -29,13 +29,13 @@ FULL = 2.0 * np.pi
             ),
         ),
         "B4.2b": Plate(
-            title="A path through the identity whose logarithm must jump, and one beside it",
+            title="A path through the identity whose logarithm, begun at 0, must jump; and one beside it",
             equations=("4.25", "4.27", "4.30"),
             caption=(
                 "Left: a full turn about x, then a turn about y. The path turns off at I, and no logarithm "
-                "of it is continuous. Right: the same path moved aside by a small rotation avoids I, and its "
-                "logarithm runs round inside the sphere |x| = 2 pi. Below: the smallest singular value of "
-                "d exp, zero at every |x| = 2n pi; the dots are the two paths where they are now."
+                "of it that begins at 0 is continuous. Right: the same path moved aside by a small rotation "
+                "avoids I, and its logarithm runs round inside the sphere |x| = 2 pi. Below: the smallest "
+                "singular value of d exp, zero at every |x| = 2n pi; the dots are the paths now."
             ),
             params={"view": "paths", "turn": 450.0},
         ),
@@ -63,10 +63,12 @@ def exp_singularity(
     from it to the origin, the path beside I never does.
     """
     if view == "paths":
-        return _paths(np.deg2rad(turn), np.deg2rad(aside))
+        if turn > 720.0:
+            raise ValueError(f"the paths end at a turn of 720 degrees; got {turn:g}. Turn less")
+        return _exp_paths.drawing(np.deg2rad(turn), np.deg2rad(aside))
     if turn > 360.0 * shells:
         raise ValueError(
-            f"exp-singularity: turn must lie inside the shells, at most {360 * shells} degrees for {shells}; "
+            f"turn must lie inside the shells, at most {360 * shells} degrees for {shells}; "
             f"got {turn:g}. Use more shells, or turn less"
         )
     return _stages(_polar(np.deg2rad(turn), np.deg2rad(azimuth)), shells)
@@ -129,30 +131,25 @@ def _surface(points: np.ndarray, color: str, material: Literal["matte", "glass"]
 
 def _marked(trail: np.ndarray, name: str, offset: tuple[float, float], radius: float) -> list[scene.Record]:
     """The way of the marked point, broken where it jumps, and the point itself."""
-    pieces = np.split(trail, _jumps(trail))
     return [
-        *(scene.Tube(piece, style.MARK, radius) for piece in pieces),
+        *(scene.Tube(piece, style.MARK, radius) for piece in np.split(trail, jumps(trail))),
         scene.Points(trail[-1:], style.MARK, 10.0, rim=style.PAPER),
         scene.Label(name, trail[-1], style.MARK, style.TEXT, offset),
     ]
 
 
-def _jumps(curve: np.ndarray) -> np.ndarray:
-    """Where a curve that is finely sampled does not go on: the indices of the points after a jump."""
-    return np.flatnonzero(np.linalg.norm(np.diff(curve, axis=0), axis=-1) > 0.5) + 1
-
-
 def _stages(x: np.ndarray, shells: int) -> Drawing:
     trail = np.linspace(0.0, 1.0, 301)[:, None] * x
     direction = (0.16, -1.0, 0.45)
-    plane = Camera((0.0, -1.0, 0.95), (0.0, -0.04, 0.0), 1.75)
-    chain = Camera(direction, (shells - 1.0, 0.0, 0.0), max(1.66 * shells, 2.7))
-    sphere = Camera(direction, (0.0, 0.0, 0.0), 2.7)
+    plane = Camera((0.0, -1.0, 0.95), (0.0, -0.04, 0.0), 1.78)
+    chain = Camera((0.0, -1.0, 0.45), (shells - 1.0, 0.0, 0.0), max(1.72 * shells, 2.9))
+    sphere = Camera(direction, (0.0, 0.0, 0.0), 2.95)
+    half = Camera((0.62, -1.0, 0.45), (-0.36, 0.0, 0.0), 2.6)
     panels = (
         ((0.0, 455.0, 600.0, 385.0), plane, _disc(trail, shells)),
         ((600.0, 455.0, 600.0, 385.0), chain, _beads(trail, shells, chain)),
         ((600.0, 5.0, 600.0, 385.0), sphere, _layers(trail, shells, sphere)),
-        ((0.0, 5.0, 600.0, 385.0), sphere, _half(trail, sphere)),
+        ((0.0, 5.0, 600.0, 385.0), half, _half(trail, float(np.arctan2(x[1], x[0])), half)),
     )
     views = [scene.View(tuple(records), camera, box) for box, camera, records in panels]
     numbers = {
@@ -183,16 +180,20 @@ def _disc(trail: np.ndarray, shells: int) -> list[scene.Record]:
 def _beads(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record]:
     records: list[scene.Record] = []
     for n in range(shells):
-        center = (2.0 * n, 0.0, 0.0)
+        center = np.array([2.0 * n, 0.0, 0.0])
         records.append(_surface(_to_chain(_grid(n), n), style.SHELLS[n], "glass"))
         lines = joined(_to_chain(g, n) for g in _graticule(n))
         records.append(scene.Lines(lines, style.INK, style.HAIR, 0.3))
         records.append(scene.Lines(camera.sphere_outline(center, 1.0), style.SHELLS_TEXT[n], style.EDGE))
+        below = center - 1.12 * camera.axes[1]
+        records.append(
+            scene.Label(f"$n = {n + 1}$", below, style.SHELLS_TEXT[n], style.SMALL_TEXT, anchor="ct")
+        )
     poles = np.array([(2.0 * n - 1.0, 0.0, 0.0) for n in range(shells + 1)])
     records.append(scene.Points(poles, style.INK, 7.0))
     for n, pole in enumerate(poles):
         name = "$1$" if n % 2 == 0 else "$-1$"
-        offset = (-20.0, 0.0) if n == 0 else (24.0, 0.0) if n == shells else (0.0, 62.0)
+        offset = (-24.0, 0.0) if n == 0 else (30.0, 0.0) if n == shells else (0.0, 66.0)
         records.append(scene.Label(name, pole, style.INK, style.SMALL_TEXT, offset))
     carried = _to_chain(trail, _shell(trail, shells))
     return records + _marked(carried, "$x$", (0.0, -30.0), 0.03)
@@ -221,10 +222,16 @@ def _layers(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record
         pole = np.array([side, 0.0, 0.0])
         records.append(scene.Points([pole], style.INK, 7.0))
         records.append(scene.Label(name, outer * pole, style.INK, style.SMALL_TEXT, (26.0 * side, 0.0)))
-    return records + _marked(_to_sphere(trail), "$q$", (0.0, 30.0), 0.016)
+    # On the near half, which is cut away, the way of the marked point hangs in the air.
+    way = _to_sphere(trail)
+    near = np.where((way @ camera.axes[2] > 0.0)[:, None], way, np.nan)
+    records.append(scene.Lines(near, style.MARK, style.CURVE, dash=(3.0, 7.0)))
+    far = way[way @ camera.axes[2] <= 0.0]
+    records += [scene.Tube(piece, style.MARK, 0.016) for piece in np.split(far, jumps(far)) if len(piece)]
+    return records + _marked(way[-1:], "$q$", (0.0, 30.0), 0.016)
 
 
-def _half(trail: np.ndarray, camera: Camera) -> list[scene.Record]:
+def _half(trail: np.ndarray, azimuth: float, camera: Camera) -> list[scene.Record]:
     grid = _grid(0)[:17]
     around = np.linspace(0.0, FULL, 181)
     rim = _to_sphere(_polar(np.pi, around))
@@ -235,10 +242,11 @@ def _half(trail: np.ndarray, camera: Camera) -> list[scene.Record]:
         scene.Lines(joined(lines), style.GLASS_EDGE, style.HAIR, 0.6),
         scene.Lines(rim, style.INK, 3.0),
         scene.Points([(-1.0, 0.0, 0.0)], style.INK, 7.0),
-        scene.Label("$I$", (-1.0, 0.0, 0.0), style.INK, style.TEXT, (-24.0, 0.0)),
+        scene.Label("$I$", (-1.0, 0.0, 0.0), style.INK, style.TEXT, (-46.0, -4.0)),
     ]
-    for azimuth, color in zip(np.deg2rad([20.0, 80.0, 140.0]), style.PAIRS, strict=True):
-        pair = _drawn(quaternion.exp(_polar(np.array([np.pi, -np.pi]) / 2.0, azimuth)))
+    # Opposite points of the rim are one half turn; the pair in the mark's colour is where R goes on.
+    for aside, color in ((0.0, style.MARK), (np.pi / 3.0, style.GREYS[0]), (-np.pi / 3.0, style.GREYS[1])):
+        pair = _drawn(quaternion.exp(_polar(np.array([np.pi, -np.pi]) / 2.0, azimuth + aside)))
         records.append(scene.Lines(pair, color, style.THIN, dash=(6.0, 6.0)))
         records.append(scene.Points(pair, color, 8.0))
     return records + _marked(_to_rotations(trail), "$R$", (0.0, 30.0), 0.016)
@@ -248,88 +256,12 @@ def _captions() -> list[scene.Record]:
     texts = (
         (300.0, 872.0, r"(a)  rotation vectors $x \in \mathrm{\mathbb{R}}^3$"),
         (900.0, 872.0, r"(b)  $|x| = 2n\pi$ becomes a point"),
-        (900.0, 410.0, r"(c)  $q = \exp(x/2) \in S^3$"),
-        (300.0, 410.0, r"(d)  $q$ and $-q$ are one $R \in SO(3)$"),
+        (900.0, 392.0, r"(c)  $q = \exp(x/2) \in S^3$"),
+        (300.0, 392.0, r"(d)  $q$ and $-q$ are one $R \in SO(3)$"),
     )
-    arrows = (((570, 650), (640, 650)), ((900, 470), (900, 440)), ((640, 190), (570, 190)))
+    arrows = (((570, 650), (630, 650)), ((900, 484), (900, 424)), ((630, 190), (570, 190)))
     records: list[scene.Record] = [
-        scene.Label(text, (x, y - 8.0, 0.0), style.INK, style.SMALL_TEXT + 3.0, anchor="cn")
+        scene.Label(text, (x, y - 14.0, 0.0), style.INK, style.SMALL_TEXT, anchor="cn")
         for x, y, text in texts
     ]
     return records + [scene.Arrow((*a, 0.0), (*b, 0.0), style.INK, 2.0, 4.0) for a, b in arrows]
-
-
-def _paths(turn: float, aside: float) -> Drawing:
-    """R_x up to a full turn, then R_y: as it is, and moved aside by a rotation about z."""
-    # Closest together at full turns, where the path passes I: beside it the logarithm moves fastest.
-    turns, rest = np.divmod(np.linspace(0.0, 3.0, 361), 1.0)
-    steps = FULL * (turns + rest**2 * (3.0 - 2.0 * rest))
-    through = _motion(steps)
-    beside = so3.rotation("z", aside) @ through
-    shown = max(int(np.searchsorted(steps, turn + 1e-9)), 1)
-    lifts = [so3.log_along(through, np.zeros(3)), so3.log_along(beside, np.array([0.0, 0.0, aside]))]
-    x = np.linspace(0.0, 3.0 * FULL, 601)
-    jacobian = so3.left_jacobian(np.stack([x, 0.0 * x, 0.0 * x], axis=-1))
-    smallest = np.linalg.svd(jacobian, compute_uv=False).min(axis=-1)
-    camera = Camera((1.0, 0.50, 0.42), (0.0, 0.0, 0.0), 3.1)
-    views = [
-        scene.View(
-            tuple(_lift_view(lift[:shown] / FULL, camera, i)), camera, (600.0 * i, 318.0, 600.0, 500.0)
-        )
-        for i, lift in enumerate(lifts)
-    ]
-    titles = ("through the identity", "beside the identity")
-    page: list[scene.Record] = [
-        scene.Label(text, (300.0 + 600.0 * i, 856.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
-        for i, text in enumerate(titles)
-    ]
-    page += _smallest(x, smallest, [float(np.linalg.norm(lift[shown - 1])) for lift in lifts])
-    steps_between = [np.linalg.norm(np.diff(lift, axis=0), axis=-1).max() for lift in lifts]
-    numbers = {
-        "turn": steps,
-        "lift_through": lifts[0],
-        "lift_beside": lifts[1],
-        "largest_step": np.array(steps_between),
-        "length": x,
-        "smallest_singular_value": smallest,
-    }
-    return Drawing(scene.Picture((*views, scene.View(tuple(page)))), numbers)
-
-
-def _motion(turn: np.ndarray) -> np.ndarray:
-    first, then = np.minimum(turn, FULL), np.maximum(turn - FULL, 0.0)
-    return so3.rotation("y", then) @ so3.rotation("x", first)
-
-
-def _lift_view(lift: np.ndarray, camera: Camera, which: int) -> list[scene.Record]:
-    jumps = _jumps(lift)
-    color = (style.WRONG, style.RIGHT)[which]
-    names = ("$x_1$", "$x_2$", "$x_3$")
-    records = [*globe(camera, alpha=0.75), *coordinate_axes(camera, names, 1.42)]
-    corner = (camera.axes[0] + camera.axes[1]) / np.sqrt(2.0)
-    records.append(
-        scene.Label(r"$|x| = 2\pi$", corner, style.GLASS_EDGE, style.SMALL_TEXT, (20.0, 0.0), "lc")
-    )
-    records += [scene.Tube(piece, color, 0.018) for piece in np.split(lift, jumps)]
-    for jump in jumps:
-        records.append(scene.Lines(lift[jump - 1 : jump + 1], color, 2.6, dash=(4.0, 6.0)))
-        records.append(scene.Points(lift[jump - 1 : jump + 1], style.PAPER, 8.0, rim=color))
-        text = rf"a jump of ${number(np.linalg.norm(lift[jump] - lift[jump - 1]) * 2.0)}\pi$"
-        records.append(scene.Label(text, lift[jump - 1], color, style.SMALL_TEXT, (18.0, -18.0), "lt"))
-    records.append(scene.Points(lift[[0]], color, 8.0))
-    records.append(scene.Points(lift[[-1]], color, 11.0, rim=style.PAPER))
-    return records
-
-
-def _smallest(x: np.ndarray, values: np.ndarray, marked: list[float]) -> list[scene.Record]:
-    axes = Axes((150.0, 90.0, 880.0, 170.0), (0.0, 3.0 * FULL), (0.0, 1.1))
-    ticks = [(FULL * n, rf"${2 * n}\pi$" if n else "$0$") for n in range(4)]
-    records = axes.frame(
-        ticks, [(0.0, "$0$"), (1.0, "$1$")], "$|x|$", r"smallest singular value of $d\exp_x$"
-    )
-    records.append(axes.area(x, values, style.INK, 0.07))
-    records.append(axes.curve(x, values, style.INK))
-    records.append(axes.dots(FULL * np.arange(1, 4), 0.0, style.INK))
-    for length, color in zip(marked, (style.WRONG, style.RIGHT), strict=True):
-        records.append(axes.dots(length, np.interp(length, x, values), color, 9.0))
-    return records

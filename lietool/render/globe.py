@@ -1,5 +1,7 @@
 """A sphere of glass with its graticule: the picture of S^3, of shells, of the ball of rotation vectors."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from lietool.render import solids, style
@@ -26,11 +28,16 @@ def meridians(radius: float, longitudes: np.ndarray, n: int = 61) -> np.ndarray:
     )
 
 
-def joined(curves) -> np.ndarray:
+def joined(curves: Iterable[np.ndarray]) -> np.ndarray:
     """Return several polylines as one, with a row of NaN between them."""
     gap = np.full((1, 3), np.nan)
     parts = [part for curve in curves for part in (np.asarray(curve, float), gap)]
     return np.concatenate(parts[:-1])
+
+
+def jumps(curve: np.ndarray, gap: float = 0.5) -> np.ndarray:
+    """Return where a finely sampled curve (n, 3) does not go on: the indices of the points after a jump."""
+    return np.flatnonzero(np.linalg.norm(np.diff(curve, axis=0), axis=-1) > gap) + 1
 
 
 def globe(

@@ -1,8 +1,9 @@
 """Colours, widths and type sizes, named by what they mean; nothing else in the project knows a colour.
 
-Every colour is an sRGB hex string.  The three frame colours and the ramp keep
-apart for the common forms of colour blindness and differ in lightness, so that
-they keep apart in grey too.  Widths and sizes are in page units: the page of a
+Every colour is an sRGB hex string.  The three frame colours keep apart for the
+common forms of colour blindness because they differ in lightness (red in the
+middle, green light, blue dark), so that they keep apart in grey too; type in
+their colours takes the darker `AXES_TEXT`.  Widths and sizes are in page units: the page of a
 picture is 1200 x 900 of them unless it says otherwise.
 """
 
@@ -23,11 +24,12 @@ WRONG = "#c8372d"
 RIGHT = "#2b66b1"
 MARK = "#c8372d"
 
-AXIS_X = "#c8372d"
-AXIS_Y = "#2e8b57"
-AXIS_Z = "#2b66b1"
-PAIRS = (ARC, AXIS_Y, AXIS_Z)
+AXIS_X = "#cc3b30"
+AXIS_Y = "#69b78d"
+AXIS_Z = "#21508f"
 AXES = (AXIS_X, AXIS_Y, AXIS_Z)
+AXES_TEXT = ("#b02f26", "#2c7a52", "#21508f")
+GREYS = ("#3a3f47", "#8d939d", "#d9dde3")
 
 GLASS = "#b4cdea"
 GLASS_EDGE = "#4a6a94"
@@ -42,9 +44,10 @@ THIN = 1.6
 EDGE = 1.9
 GRATICULE_ALPHA = 0.42
 
-TEXT = 30.0
-SMALL_TEXT = 25.0
-TITLE_TEXT = 32.0
+# At a column of 8.5 cm, where a page unit is 0.07 mm, the smallest type is 6 points.
+SMALL_TEXT = 30.0
+TEXT = 33.0
+TITLE_TEXT = 35.0
 
 
 def linear(color: str | tuple[float, ...], alpha: float = 1.0) -> np.ndarray:
