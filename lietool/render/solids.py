@@ -42,7 +42,8 @@ def grid(points: np.ndarray) -> Triangles:
     normals /= np.where(length > 0.0, length, 1.0)
     for edge, inner in ((0, 1), (-1, -2)):
         if np.ptp(points[edge], axis=0).max() < 1e-9:
-            normals[edge] = normals[inner].mean(axis=0)
+            pole = normals[inner].mean(axis=0)
+            normals[edge] = pole / np.linalg.norm(pole)
     return points.reshape(-1, 3), grid_faces(*points.shape[:2]), normals.reshape(-1, 3)
 
 
