@@ -388,3 +388,16 @@ def test_the_whole_way_with_the_real_renderer(run, tmp_path):
     for path in (tmp_path / "golden" / "labels").iterdir():
         path.unlink()
     assert "label '$3$' is not in" in run("verify T1", 3, obj=None)
+
+
+def test_a_plate_that_cannot_be_drawn_any_more_fails_and_the_others_are_judged(run, accepted, studio):
+    def break_three(image):
+        if image[0, 0, 0] == first:
+            raise ValueError("dots: count must be lucky; got 3")
+        return image
+
+    first = np.random.default_rng(len("T1")).integers(0, 256, (40, 60, 3)).astype(np.uint8)[0, 0, 0]
+    studio.change = break_three
+    said = run("verify", 5)
+    assert "cannot be drawn any more: dots: count must be lucky" in said
+    assert re.search(r"T1b +equal", said)

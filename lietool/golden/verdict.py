@@ -22,6 +22,7 @@ CODES = {
     "golden's renderer": 5,
     "picture": 5,
     "numbers": 5,
+    "undrawn": 5,
 }
 CANONICAL = "llvmpipe"
 

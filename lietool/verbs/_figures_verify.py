@@ -51,7 +51,12 @@ def run(
     general = [verdict.Finding("renderer", studio.trouble)] if studio.trouble else []
     results = []
     for item in _table.progress(items, "verifying"):
-        results.append(_verify(item, studio, failed))
+        try:
+            results.append(_verify(item, studio, failed))
+        except ValueError as error:
+            # Its own parameters were drawn once; the other plates still have to be judged.
+            found = verdict.Finding("undrawn", f"cannot be drawn any more: {error}")
+            results.append(Result(item, verdict.Verdict((found,))))
     if everything:
         general += _unregistered(items)
     code = verdict.exit_code([*general, *(f for result in results for f in result.verdict.findings)])
