@@ -157,6 +157,9 @@ def _order(backend: str | None) -> tuple[str, ...]:
 
 def _create(backends: tuple[str, ...]) -> Context:
     variables, notes = mesa.settings()
+    for name in (name for name, value in variables.items() if value is None):
+        # For good, since Mesa from 25.0 on reads it only when it first compiles a shader.
+        os.environ.pop(name, None)
     skipped: dict[str, str] = {}
     for backend in backends:
         try:
