@@ -197,7 +197,7 @@ def rasterise(text: str, pixels: float) -> tuple[np.ndarray, int]:
 
     style: Any = {"mathtext.fontset": "cm", "font.family": "cmr10", "text.hinting": "none"}
     with matplotlib.rc_context(style):
-        # The private parser: pyparsing's own error is a ValueError whose first line says enough.
+        # The error quotes the text and a caret before it comes to the point in its last line.
         try:
             drawn = MathTextParser("agg").parse(
                 text, 72, FontProperties(size=pixels * _OVERSAMPLE, family="cmr10")
