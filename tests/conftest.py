@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import pytest
@@ -51,10 +51,13 @@ def _without_renderer() -> Iterator[None]:
     try:
         return (yield)
     except context.NoRendererError as error:
-        reason = str(error).splitlines()[0]
-        if os.environ.get(_REQUIRE) == "1":
-            pytest.fail(f"{_REQUIRE}=1, but {reason}", pytrace=False)
-        pytest.skip(reason)
+        _give_up(str(error).splitlines()[0])
+
+
+def _give_up(reason: str) -> NoReturn:
+    if os.environ.get(_REQUIRE) == "1":
+        pytest.fail(f"{_REQUIRE}=1, but {reason}", pytrace=False)
+    pytest.skip(reason)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +96,14 @@ def plate() -> Callable[[str], Built]:
     """Each of our plates by its id: drawn once, when it is first asked for."""
     commands = figure.plates((paths.FIGURES,))
     return cache(lambda plate_id: build(_studio.Item(plate_id, commands[plate_id])))
+
+
+@pytest.fixture
+def canonical() -> None:
+    """For tests that compare with goldens, which not every renderer can."""
+    context.get()
+    if trouble := _studio.Studio().trouble:
+        _give_up(trouble)
 
 
 @pytest.fixture

@@ -1,0 +1,346 @@
+"""Our plates: goldens, labels in their places, parameters at their ends, the laws in their numbers.
+
+A plate is drawn once for all tests.  That the comparison would notice a mistake is tested by making some.
+"""
+
+import json
+import re
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from lietool import figure, paths
+from lietool.declaration import Figure
+from lietool.golden import compare, folder, numbers, store
+from lietool.lie import euler, kernels, quaternion, so3
+from lietool.render import draw, style
+from lietool.verbs import _figures_verify, _picture, _studio
+
+COMMANDS = figure.plates((paths.FIGURES,))
+PLATES = list(COMMANDS)
+NAMES = list(dict.fromkeys(COMMANDS.values()))
+
+
+def item(plate_id: str) -> _studio.Item:
+    return _studio.Item(plate_id, COMMANDS[plate_id])
+
+
+@pytest.mark.parametrize("plate_id", PLATES)
+class TestPlates:
+    def test_picture_and_numbers_are_as_accepted(self, plate_id, plate, canonical):
+        built = plate(plate_id)
+        found = _figures_verify.judge(built.item, built.painted)
+        assert found.passes, "\n".join(finding.message for finding in found.findings)
+
+    def test_numbers_are_as_accepted_without_a_renderer(self, plate_id):
+        sketched = _studio.Studio().sketch(item(plate_id))
+        found = _figures_verify.judge(item(plate_id), sketched, pictured=False)
+        assert found.passes, "\n".join(finding.message for finding in found.findings)
+
+    def test_numbers_are_finite_and_can_be_written(self, plate_id, plate):
+        shown = plate(plate_id).painted.numbers
+        assert shown
+        for name, value in shown.items():
+            array = np.asarray(value)
+            assert array.dtype.kind not in "fc" or np.isfinite(array).all(), name
+        assert numbers.dumps(numbers.loads(numbers.dumps(shown))) == numbers.dumps(shown)
+
+    def test_labels_lie_inside(self, plate_id, plate):
+        built = plate(plate_id)
+        height, width = built.painted.image.shape[:2]
+        outside = [x for x in built.labels if min(x.box) < 4 or x.box[2] > width - 4 or x.box[3] > height - 4]
+        assert built.labels and not outside
+
+    def test_labels_do_not_overlap(self, plate_id, plate):
+        labels = plate(plate_id).labels
+        overlapping = [
+            (a.text, b.text)
+            for i, a in enumerate(labels)
+            for b in labels[:i]
+            if a.box[0] < b.box[2] and b.box[0] < a.box[2] and a.box[1] < b.box[3] and b.box[1] < a.box[3]
+        ]
+        assert not overlapping
+
+    def test_labels_can_be_read_in_grey(self, plate_id, plate):
+        built = plate(plate_id)
+        for label in built.labels:
+            x0, y0, x1, y1 = label.box
+            pixels = built.painted.image[y0 - 2 : y1 + 2, x0 - 2 : x1 + 2].reshape(-1, 3) / 255.0
+            linear = np.where(pixels <= 0.04045, pixels / 12.92, ((pixels + 0.055) / 1.055) ** 2.4)
+            light = linear @ (0.2126, 0.7152, 0.0722)
+            # The contrast that WCAG asks of large text, between ink and what is around it.
+            assert (np.quantile(light, 0.9) + 0.05) / (light.min() + 0.05) >= 3.0, label.text
+
+    def test_it_is_not_empty(self, plate_id, plate):
+        image = plate(plate_id).painted.image
+        ink = (image != 255).any(axis=2)
+        assert 0.02 < ink.mean() < 0.9
+        # Nothing is cut off by an edge of the page.
+        assert not (ink[0].any() or ink[-1].any() or ink[:, 0].any() or ink[:, -1].any())
+
+    def test_what_is_said_about_it(self, plate_id):
+        plate = item(plate_id).plate
+        assert plate.title.strip() and len(plate.caption) > 60 and plate.caption.endswith(".")
+        assert plate.equations and all(re.fullmatch(r"[1-9A]\.\d+", number) for number in plate.equations)
+
+
+def test_goldens_and_labels_belong_to_plates():
+    places = [item(plate_id).place for plate_id in PLATES]
+    assert not list(folder.unregistered(paths.GOLDEN, places))
+    used = set().union(*(store.label_keys(store.provenance(place)) for place in places))
+    assert {file.stem for file in (paths.GOLDEN / store.LABELS).glob("*.png")} == used
+
+
+def sampled(figure_: Figure) -> Iterator[dict[str, object]]:
+    """Each plate, and each plate with one parameter at one end of its range or at one of its choices."""
+    for plate_id in figure_.plates:
+        base = figure_.plate_params(plate_id)
+        yield base
+        for parameter in figure_.parameters:
+            ends = (parameter.param.low, parameter.param.high)
+            if parameter.kind in ("float", "int"):
+                kind = float if parameter.kind == "float" else int
+                yield from (base | {parameter.name: kind(end)} for end in ends if end is not None)
+            yield from (base | {parameter.name: choice} for choice in parameter.param.choices)
+
+
+def sketch(figure_: Figure, **params: object) -> str:
+    """Draw small; return what is wrong with the values, in one line, or nothing."""
+    try:
+        drawing = figure_.draw(**params)
+    except ValueError as error:
+        return str(error)
+    image = draw.render(drawing.picture, size=(64, 48), draft=True).image
+    assert (image != 255).any()
+    numbers.dumps(drawing.numbers)
+    return ""
+
+
+@pytest.mark.parametrize("name", NAMES)
+class TestFigures:
+    def test_help(self, name):
+        loaded = figure.load(name, (paths.FIGURES,))
+        assert "What to look for:" in loaded.help
+        assert loaded.summary.endswith(".") and len(loaded.summary) < 110
+
+    def test_parameters(self, name):
+        for parameter in figure.load(name, (paths.FIGURES,)).parameters:
+            param = parameter.param
+            assert param.help and not param.help.endswith("."), parameter.name
+            if parameter.kind in ("float", "int"):
+                assert param.low is not None and param.high is not None, parameter.name
+                assert param.low <= parameter.default <= param.high
+            # What turns is in degrees.
+            turns = re.search(r"\b(angle|turn(ed)?|rotation)\b", param.help) and parameter.kind == "float"
+            assert not turns or param.unit == "deg", parameter.name
+
+    def test_the_ends_of_every_range(self, name):
+        loaded = figure.load(name, (paths.FIGURES,))
+        complaints = {}
+        for params in sampled(loaded):
+            if complaint := sketch(loaded, **params):
+                complaints[json.dumps(params)] = complaint
+        for complaint in complaints.values():
+            assert "\n" not in complaint and "; got " in complaint, complaint
+        # Parameters may exclude each other here and there, but not as a rule.
+        assert len(complaints) <= 3, complaints
+
+    def test_animation(self, name):
+        loaded = figure.load(name, (paths.FIGURES,))
+        assert loaded.time is not None
+        values = _picture.sweep(loaded.time)
+        for plate_id in loaded.plates:
+            base = loaded.plate_params(plate_id)
+            for value in values:
+                loaded.check(base | {loaded.time.param: value})
+            first, middle = values[0], values[len(values) // 2]
+            pictures = [loaded.draw(**base | {loaded.time.param: value}).picture for value in (first, middle)]
+            images = [draw.render(picture, size=(64, 48), draft=True).image for picture in pictures]
+            assert not np.array_equal(*images)
+
+    def test_every_frame_can_be_drawn(self, name):
+        loaded = figure.load(name, (paths.FIGURES,))
+        for value in dict.fromkeys(_picture.sweep(loaded.time)[::3]):
+            loaded.draw(**{loaded.time.param: value})
+
+
+class TestSlerp:
+    def test_the_line_is_laid_onto_the_arc(self, plate):
+        shown = plate("B2.8").numbers
+        assert np.abs(shown["arc_points"] - shown["slerp"]).max() < 1e-14
+        assert np.linalg.norm(shown["arc_points"], axis=-1) == pytest.approx(1.0)
+        assert np.linalg.norm(shown["tangent_points"][-1]) == pytest.approx(shown["theta"])
+
+    def test_equal_steps_make_equal_arcs(self, plate):
+        shown = plate("B2.8").numbers
+        arc, line = shown["arc_points"], shown["tangent_points"]
+        steps = len(arc) - 1
+        cosines = np.sum(arc[1:] * arc[:-1], axis=-1)
+        assert np.arccos(cosines) == pytest.approx(np.full(steps, shown["theta"] / steps))
+        assert np.linalg.norm(np.diff(line, axis=0), axis=-1) == pytest.approx(
+            np.full(steps, shown["theta"] / steps)
+        )
+
+    def test_the_moment_divides_the_angle(self, plate):
+        shown = plate("B2.8").numbers
+        t = plate("B2.8").item.parameters["t"]
+        assert np.arccos(shown["arc_points"][0] @ shown["marked"]) == pytest.approx(t * shown["theta"])
+        assert np.arccos(shown["arc_points"][-1] @ shown["marked"]) == pytest.approx((1 - t) * shown["theta"])
+
+    @pytest.mark.parametrize(
+        ("q0", "q1"),
+        [
+            ((1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)),
+            ((1.0, 0.0, 0.0, 0.0), (1.0, 1e-9, 0.0, 0.0)),
+            ((1.0, 0.0, 0.0, 0.0), (-1.0, 1e-3, 0.0, 0.0)),
+            ((3.0, 0.0, 4.0, 0.0), (0.1, -0.2, 0.3, -0.4)),
+            ((1e-100, 0.0, 0.0, 1e-100), (1e100, 1e100, 0.0, 0.0)),
+            ((0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0)),
+        ],
+    )
+    def test_any_two_quaternions(self, q0, q1):
+        assert sketch(figure.load("slerp", (paths.FIGURES,)), q0=q0, q1=q1) == ""
+
+    @pytest.mark.parametrize(
+        ("q0", "q1"),
+        [((0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)), ((1.0, 0.0, 0.0, 0.0), (-1.0, 0.0, 0.0, 0.0))],
+    )
+    def test_no_arc(self, q0, q1):
+        complaint = sketch(figure.load("slerp", (paths.FIGURES,)), q0=q0, q1=q1)
+        assert re.match(r"quaternion\.\w+: q1? must be .*; got .*", complaint) and "\n" not in complaint
+
+
+class TestGimbal:
+    def test_at_lock_two_axes_are_one(self, plate):
+        shown = plate("GL1").numbers
+        assert shown["smallest_singular_value"][1] < 1e-15 < 0.1 < shown["smallest_singular_value"][0]
+        ordinary, locked = shown["axes"]
+        assert abs(locked[0] @ locked[2]) == pytest.approx(1.0, abs=1e-15)
+        assert abs(np.linalg.det(locked)) < 1e-15 < 0.1 < abs(np.linalg.det(ordinary))
+        for axes, smallest in zip(shown["axes"], shown["smallest_singular_value"], strict=True):
+            assert np.linalg.svd(axes, compute_uv=False)[-1] == pytest.approx(smallest, abs=1e-15)
+
+    def test_the_rotation_is_the_product_of_its_angles(self, plate):
+        shown = plate("GL1").numbers
+        for angles, R in zip(shown["angles"], shown["rotation"], strict=True):
+            (a, b, c), (p, q, r) = np.cos(angles), np.sin(angles)
+            x = np.array([[1, 0, 0], [0, a, -p], [0, p, a]])
+            y = np.array([[b, 0, q], [0, 1, 0], [-q, 0, b]])
+            z = np.array([[c, -r, 0], [r, c, 0], [0, 0, 1]])
+            assert np.abs(z @ y @ x - R).max() < 1e-15
+
+    def test_the_angles_jump_though_the_rotation_does_not(self, plate):
+        shown = plate("GL2").numbers
+        angles, middle = shown["angles"], len(shown["theta"]) // 2
+        steps = np.rad2deg(np.abs(np.diff(angles, axis=0)))
+        jump = steps[middle - 1]
+        assert sorted(jump.round(6))[1:] == pytest.approx([180.0, 180.0]) and jump[1] < 1e-9
+        assert np.delete(steps, middle - 1, axis=0).max() < 2.0
+        rotations = euler.to_matrix(angles, "xyx")
+        assert np.abs(np.diff(rotations, axis=0)).max() < 0.02
+
+    def test_where_the_singular_values_vanish(self, plate):
+        shown = plate("GL2").numbers
+        degrees = np.rad2deg(shown["theta_2"]).round(6)
+        for convention, zeros in (("xyx", [-180.0, 0.0, 180.0]), ("xyz", [-90.0, 90.0])):
+            smallest = shown[f"smallest_singular_value_{convention}"]
+            assert degrees[smallest < 1e-9].tolist() == zeros
+            assert 0.9 < smallest.max() <= 1.0 + 1e-12
+
+
+class TestExpSingularity:
+    def test_the_quaternion_is_of_the_rotation(self, plate):
+        shown = plate("B4.2").numbers
+        assert np.abs(quaternion.to_matrix(shown["quaternion"]) - shown["rotation"]).max() < 1e-14
+        angle = np.linalg.norm(shown["x"])
+        assert np.trace(shown["rotation"]) == pytest.approx(1 + 2 * np.cos(angle))
+        assert shown["quaternion"][0] == pytest.approx(np.cos(angle / 2))
+        assert shown["shell"] == np.ceil(angle / (2 * np.pi))
+
+    def test_full_turns_collapse_to_one_and_minus_one(self, plate):
+        collapsed = plate("B4.2").numbers["collapsed_to"]
+        assert np.abs(collapsed[:, 0] - [-1, 1, -1]).max() < 1e-14 and np.abs(collapsed[:, 1:]).max() < 1e-14
+
+    def test_through_the_identity_it_jumps_by_two_pi(self, plate):
+        shown = plate("B4.2b").numbers
+        steps = np.linalg.norm(np.diff(shown["lift_through"], axis=0), axis=-1)
+        assert np.count_nonzero(steps > 0.5) == 1
+        assert steps.max() == pytest.approx(2 * np.pi, abs=0.01) == shown["largest_step"][0]
+
+    def test_beside_the_identity_it_never_does(self, plate):
+        shown = plate("B4.2b").numbers
+        steps = np.linalg.norm(np.diff(shown["lift_beside"], axis=0), axis=-1)
+        assert steps.max() == pytest.approx(shown["largest_step"][1]) and steps.max() < 0.5
+        # It stays inside the sphere of a full turn, where no logarithm is singular.
+        assert np.linalg.norm(shown["lift_beside"], axis=-1).max() < 2 * np.pi - 0.05
+
+    def test_the_singular_value_vanishes_at_full_turns(self, plate):
+        shown = plate("B4.2b").numbers
+        half = shown["length"] / 2
+        # |sin(|x| / 2)| / (|x| / 2), the length of what a step across x becomes.
+        wanted = np.abs(np.sinc(half / np.pi))
+        assert np.abs(shown["smallest_singular_value"] - wanted).max() < 1e-12
+
+
+def exchanged(x: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Rodrigues' formula with sine and cosine of the half angle exchanged."""
+    theta = np.sqrt(np.sum(np.square(x), axis=0))
+    u = np.where(theta > 0, x / np.where(theta > 0, theta, 1.0), np.array([[1.0], [0.0], [0.0]]))
+    return kernels.matrix((np.sin(theta / 2), *(np.cos(theta / 2) * u)))
+
+
+def flipped(which: int):
+    """The rings of a gimbal with the sign of one angle flipped."""
+    ring_frames, sign = euler.ring_frames, np.where(np.arange(3) == which, -1.0, 1.0)
+    return lambda angles, *args, **options: ring_frames(angles * sign, *args, **options)
+
+
+def last_flipped(R: np.ndarray, convention: str) -> np.ndarray:
+    return FROM_MATRIX(R, convention) * (1.0, 1.0, -1.0)
+
+
+FROM_MATRIX = euler.from_matrix
+MISTAKES = {
+    "sine and cosine exchanged in Rodrigues' formula": ("B4.2", kernels, "rotation_exp", exchanged),
+    "the chord instead of the arc": ("B2.8", quaternion, "slerp", quaternion.nlerp),
+    "the first Euler angle's sign": ("GL1", euler, "ring_frames", flipped(0)),
+    "the second Euler angle's sign": ("GL1", euler, "ring_frames", flipped(1)),
+    "the third Euler angle's sign": ("GL1", euler, "ring_frames", flipped(2)),
+    "the third Euler angle's sign, the other way": ("GL2", euler, "from_matrix", last_flipped),
+    "the principal logarithm all along": ("B4.2b", so3, "log_along", lambda R, start: so3.log(R)),
+}
+
+
+class TestMistakesAreNoticed:
+    """Each by its picture alone, at the golden's size and by the golden's rule."""
+
+    def seen(self, plate, repaint, plate_id) -> compare.Comparison:
+        return compare.images(plate(plate_id).painted.image, repaint(plate_id))
+
+    @pytest.mark.parametrize("mistake", MISTAKES)
+    def test_in_a_formula(self, mistake, plate, repaint, monkeypatch):
+        plate_id, module, name, wrong = MISTAKES[mistake]
+        plate(plate_id)
+        monkeypatch.setattr(module, name, wrong)
+        assert not self.seen(plate, repaint, plate_id).passes
+
+    def test_a_colour_that_is_a_little_off(self, plate, repaint, monkeypatch):
+        plate("B2.8")
+        monkeypatch.setattr(style, "ARC", "#e0960b")
+        assert not self.seen(plate, repaint, "B2.8").passes
+
+    def test_a_label_that_reads_otherwise(self, plate, repaint, monkeypatch):
+        plate("GL1")
+        from lietool.figures.ch2 import gimbal
+
+        monkeypatch.setattr(gimbal, "number", lambda value, digits=2: f"{value:.{digits}f}")
+        assert not self.seen(plate, repaint, "GL1").passes
+
+    @pytest.mark.parametrize("plate_id", PLATES)
+    def test_nothing_is_noticed_where_nothing_is_wrong(self, plate_id, plate):
+        image = plate(plate_id).painted.image
+        jitter = np.random.default_rng(7).integers(-1, 2, image.shape)
+        jittered = np.clip(image + jitter, 0, 255).astype(np.uint8)
+        compared = compare.images(image, jittered)
+        assert compared.passes and not compared.equal
