@@ -124,3 +124,7 @@ class TestStyle:
 
     def luminance(self, color: str) -> float:
         return float(style.linear(color)[:3] @ (0.2126, 0.7152, 0.0722))
+
+    def test_the_axes_keep_apart_in_grey(self):
+        lightness = sorted(116 * self.luminance(color) ** (1 / 3) - 16 for color in style.AXES)
+        assert np.diff(lightness).min() > 10
