@@ -18,6 +18,8 @@ SUPPORT = {"blocks", "checks", "kernels"}
 MODULES = sorted({m.name for m in pkgutil.iter_modules(lietool.lie.__path__)} - SUPPORT)
 ENTRY = re.compile(r"^(?P<name>\w+) : (?P<kind>\([^)]*\)|\{\w+\}|bool)(?:, (?P<words>.+))?$")
 BATCH = (2, 5)
+# What a dimension with a name, such as the n of a path, is here.
+LENGTH = 4
 
 
 def public(module) -> list[FunctionType]:
@@ -51,7 +53,7 @@ def entries(f: Callable, title: str) -> list[tuple[str, str, str]]:
 def core(kind: str) -> tuple[int, ...]:
     dimensions = kind.strip("()").replace(" ", "").split(",")
     assert dimensions[0] == "...", f"{kind} must start with ..."
-    return tuple(int(d) for d in dimensions[1:] if d)
+    return tuple(int(d) if d.isdigit() else LENGTH for d in dimensions[1:] if d)
 
 
 def sample(rng: np.random.Generator, kind: str, words: str) -> np.ndarray:
@@ -178,7 +180,9 @@ def test_not_a_number_is_refused_by_function_argument_and_index(f, bad):
             broken[i][1, 3] = bad
             if f.__name__ == "act" and names[i] == "p":
                 continue  # points pass through: nan in, nan out
-            with pytest.raises(ValueError, match=rf"^{where}: {names[i]} must .* at index \(1, 3\)\.[^\n]*$"):
+            with pytest.raises(
+                ValueError, match=rf"^{where}: {names[i]} must .* at index \(1, 3(, \d+)*\)\.[^\n]*$"
+            ):
                 f(*broken)
 
 

@@ -164,15 +164,15 @@ def log_along(R: ArrayLike, start: ArrayLike, *, check: bool = True) -> NDArray[
 
     Parameters
     ----------
-    R : (n, 3, 3), rotation
+    R : (..., n, 3, 3), rotation
         The path, in steps well below a half turn.
-    start : (3,), radians
+    start : (..., 3), radians
         What the first logarithm is to be nearest to.
     check : bool, False to trust the values
 
     Returns
     -------
-    x : (n, 3), radians
+    x : (..., n, 3), radians
 
     Raises
     ------
@@ -180,11 +180,11 @@ def log_along(R: ArrayLike, start: ArrayLike, *, check: bool = True) -> NDArray[
         If R holds a matrix that is not a rotation, or start is not finite.
     """
     R = checks.rotation("so3.log_along", "R", R, 3, check)
-    x = np.empty((len(R), 3))
     reference = checks.array("so3.log_along", "start", start, (3,), check)
-    for i, step in enumerate(R):
-        reference, _ = log_near(step, reference, check=False)
-        x[i] = reference
+    x = np.empty((*np.broadcast_shapes(R.shape[:-3], reference.shape[:-1]), R.shape[-3], 3))
+    for i in range(R.shape[-3]):
+        reference, _ = log_near(R[..., i, :, :], reference, check=False)
+        x[..., i, :] = reference
     return x
 
 

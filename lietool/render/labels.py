@@ -9,6 +9,7 @@ folders first, then in the user's cache, and only then asks matplotlib.
 import contextlib
 import hashlib
 import io
+import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -191,6 +192,9 @@ def rasterise(text: str, pixels: float) -> tuple[np.ndarray, int]:
     ValueError
         If the text is not mathtext.
     """
+    if kept := cache.folder("matplotlib"):
+        # Else it complains on stderr where there is no home to write to.
+        os.environ.setdefault("MPLCONFIGDIR", str(kept))
     import matplotlib
     from matplotlib.font_manager import FontProperties
     from matplotlib.mathtext import MathTextParser

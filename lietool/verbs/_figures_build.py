@@ -1,6 +1,9 @@
 """`lietool figures build`: every plate to a PNG, with a table of what came of it."""
 
 import json
+import os
+import shutil
+import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -69,10 +72,11 @@ def _next(items: Sequence[_studio.Item], rows: Sequence[dict], comparable: bool)
     if not items:
         return ["No plates yet."]
     first = items[0]
+    program = _program()
     tries = {
-        f"lietool {first.command} --help": "what to look for, and what can be changed",
-        f"lietool figures show {first.id}": "where a plate and its golden come from",
-        "lietool figures verify": "judge pictures and numbers by their goldens",
+        f"{program} {first.command} --help": "what to look for, and what can be changed",
+        f"{program} figures show {first.id}": "where a plate and its golden come from",
+        f"{program} figures verify": "judge pictures and numbers by their goldens",
     }
     width = max(map(len, tries))
     lines = ["Try next:", *(f"  {line:<{width}}  {what}" for line, what in tries.items())]
@@ -82,3 +86,11 @@ def _next(items: Sequence[_studio.Item], rows: Sequence[dict], comparable: bool)
             f"Not as accepted: {', '.join(wrong)}. `lietool figures verify {' '.join(wrong[:3])}` says why."
         ]
     return lines
+
+
+def _program() -> str:
+    """How to call this program from here: by its name, or, before the environment is activated, by its path."""
+    beside = Path(sys.executable).with_name("lietool")
+    if shutil.which("lietool") or not beside.exists():
+        return "lietool"
+    return os.path.relpath(beside)
