@@ -71,7 +71,7 @@ def _rings(angles: np.ndarray) -> Drawing:
     both = np.stack([angles, locked])
     axes = euler.axes(both, "xyz")
     smallest = euler.singular_values(both, "xyz").min(axis=-1)
-    camera = Camera((1.0, 0.62, 0.92), (0.0, 0.0, 0.0), 2.92)
+    camera = Camera((1.0, 0.62, 0.92), (0.0, 0.0, 0.0), 3.12)
     views = []
     for i in range(2):
         records = [*_gimbal(both[i]), *_axes(axes[i], camera)]
@@ -135,12 +135,12 @@ def _axes(axes: np.ndarray, camera: Camera) -> list[scene.Record]:
     # At lock the inner axis is drawn beside the outer one, in the direction that it really has.
     aside = 0.045 * camera.axes[0] if locked else np.zeros(3)
     records: list[scene.Record] = []
-    for k, reach, shift in ((0, 1.42 if locked else 1.26, -aside), (1, 1.26, 0.0 * aside), (2, 1.42, aside)):
+    for k, reach, shift in ((0, 1.42 if locked else 1.18, -aside), (1, 1.18, 0.0 * aside), (2, 1.42, aside)):
         axis, color = axes[k], style.AXES[k]
         line = np.stack([-reach * axis, reach * axis]) + shift
         records.append(scene.Lines(line, color, style.CURVE if locked and k != 1 else style.EDGE))
-        records.append(scene.Arrow((reach - 0.26) * axis + shift, line[1], color, 0.02))
-        records += _turn((reach - (0.42 if locked and k == 0 else 0.26)) * axis, axis, color, camera)
+        records.append(scene.Arrow((reach - 0.24) * axis + shift, line[1], color, 0.02))
+        records += _turn((reach - (0.42 if locked and k == 0 else 0.22)) * axis, axis, color, camera)
         if not (near and k == 0):
             text = rf"${NAMES[0]},\,{NAMES[2]}$" if near and k == 2 else f"${NAMES[k]}$"
             records.append(beyond(text, reach * axis, axis, camera))

@@ -228,7 +228,7 @@ def _layers(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record
     records.append(scene.Lines(near, style.MARK, style.CURVE, dash=(3.0, 7.0)))
     far = way[way @ camera.axes[2] <= 0.0]
     records += [scene.Tube(piece, style.MARK, 0.016) for piece in np.split(far, jumps(far)) if len(piece)]
-    return records + _marked(way[-1:], "$q$", (0.0, 30.0), 0.016)
+    return records + _marked(way[-1:], "$q$", _aside(way[-1], camera), 0.016)
 
 
 def _half(trail: np.ndarray, azimuth: float, camera: Camera) -> list[scene.Record]:
@@ -249,7 +249,13 @@ def _half(trail: np.ndarray, azimuth: float, camera: Camera) -> list[scene.Recor
         pair = _drawn(quaternion.exp(_polar(np.array([np.pi, -np.pi]) / 2.0, azimuth + aside)))
         records.append(scene.Lines(pair, color, style.THIN, dash=(6.0, 6.0)))
         records.append(scene.Points(pair, color, 8.0))
-    return records + _marked(_to_rotations(trail), "$R$", (0.0, 30.0), 0.016)
+    way = _to_rotations(trail)
+    return records + _marked(way, "$R$", _aside(way[-1], camera), 0.016)
+
+
+def _aside(point: np.ndarray, camera: Camera) -> tuple[float, float]:
+    """Where the name of a point of the sphere goes: above it, but below it near the top, where a caption is."""
+    return (0.0, -32.0) if camera.axes[1] @ point > 0.6 else (0.0, 32.0)
 
 
 def _captions() -> list[scene.Record]:

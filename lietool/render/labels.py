@@ -144,6 +144,9 @@ def _decode(path: Path, stamp: int) -> Glyphs | None:
 
     try:
         with Image.open(path) as image:
+            # A byte that flipped would otherwise decode to another shape.
+            image.verify()
+        with Image.open(path) as image:
             baseline = int(image.info["Baseline"])
             return Glyphs(np.array(image.convert("L")), baseline, path.stem)
     except (OSError, UnidentifiedImageError, KeyError, ValueError):

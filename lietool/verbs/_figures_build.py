@@ -83,13 +83,13 @@ def _next(items: Sequence[_studio.Item], rows: Sequence[dict], comparable: bool)
     wrong = [row["plate"] for row in rows if row["verdict"] not in ("equal", "passes")]
     if comparable and wrong:
         lines += [
-            f"Not as accepted: {', '.join(wrong)}. `lietool figures verify {' '.join(wrong[:3])}` says why."
+            f"Not as accepted: {', '.join(wrong)}. `{program} figures verify {' '.join(wrong[:3])}` says why."
         ]
     return lines
 
 
 def _program() -> str:
-    """How to call this program from here: by its name, or, before the environment is activated, by its path."""
+    """How to call this program from here: by its name, or by its path while the environment is not active."""
     beside = Path(sys.executable).with_name("lietool")
     if shutil.which("lietool") or not beside.exists():
         return "lietool"
