@@ -254,8 +254,8 @@ def _half(trail: np.ndarray, azimuth: float, camera: Camera) -> list[scene.Recor
 
 
 def _aside(point: np.ndarray, camera: Camera) -> tuple[float, float]:
-    """Where the name of a point of the sphere goes: above it, but below it near the top, where a caption is."""
-    return (0.0, -32.0) if camera.axes[1] @ point > 0.6 else (0.0, 32.0)
+    """Where the name of a point of the sphere goes: above it, but below it near the top, under a caption."""
+    return (0.0, -30.0) if camera.axes[1] @ point > 0.6 else (0.0, 30.0)
 
 
 def _captions() -> list[scene.Record]:

@@ -149,7 +149,7 @@ def _decode(path: Path, stamp: int) -> Glyphs | None:
         with Image.open(path) as image:
             baseline = int(image.info["Baseline"])
             return Glyphs(np.array(image.convert("L")), baseline, path.stem)
-    except (OSError, UnidentifiedImageError, KeyError, ValueError):
+    except (OSError, UnidentifiedImageError, SyntaxError, KeyError, ValueError):
         # A file that somebody tore is as good as none: it is made again.
         return None
 
@@ -198,6 +198,10 @@ def rasterise(text: str, pixels: float) -> tuple[np.ndarray, int]:
     if kept := cache.folder("matplotlib"):
         # Else it complains on stderr where there is no home to write to.
         os.environ.setdefault("MPLCONFIGDIR", str(kept))
+    import logging
+
+    # Where it keeps its own cache, and which glyphs it lacks, is no message for the user of a figure.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     import matplotlib
     from matplotlib.font_manager import FontProperties
     from matplotlib.mathtext import MathTextParser
