@@ -156,7 +156,7 @@ def _order(backend: str | None) -> tuple[str, ...]:
 
 
 def _create(backends: tuple[str, ...]) -> Context:
-    variables, notes = mesa.settings()
+    variables, notes = mesa.settings(software=not {"gpu", "system"} & set(backends))
     for name in (name for name, value in variables.items() if value is None):
         # For good, since Mesa from 25.0 on reads it only when it first compiles a shader.
         os.environ.pop(name, None)

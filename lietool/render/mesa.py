@@ -14,12 +14,23 @@ from lietool import cache
 # Every other width was seen to crash Mesa 22.3 as soon as it compiles a shader.
 VECTOR_WIDTHS = ("128", "256")
 
-_WIDTH, _SHADERS, _LOG = "LP_NATIVE_VECTOR_WIDTH", "MESA_SHADER_CACHE_DIR", "EGL_LOG_LEVEL"
+# What OSMesa and EGL on a software device can be; they crash when they are told of another driver.
+_SOFTWARE = ("llvmpipe", "softpipe")
+# With less than they are, they crash or refuse.
+_OVERRIDES = ("MESA_GL_VERSION_OVERRIDE", "MESA_GLSL_VERSION_OVERRIDE", "MESA_EXTENSION_OVERRIDE")
+
+_DRIVER, _WIDTH = "GALLIUM_DRIVER", "LP_NATIVE_VECTOR_WIDTH"
+_SHADERS, _LOG = "MESA_SHADER_CACHE_DIR", "EGL_LOG_LEVEL"
 _LIBRARIES = re.compile(r"lib(OSMesa|E?GL|glapi|gallium|LLVM|nvidia|Open)|(_dri|_drv)\.so")
 
 
-def settings() -> tuple[dict[str, str | None], list[str]]:
+def settings(*, software: bool = True) -> tuple[dict[str, str | None], list[str]]:
     """Return the variables that Mesa must find while it starts (None: unset), and what to tell about them.
+
+    Parameters
+    ----------
+    software : bool
+        Whether it will render on the processor, which cannot be any driver of Mesa's.
 
     Returns
     -------
@@ -34,6 +45,15 @@ def settings() -> tuple[dict[str, str | None], list[str]]:
     if width is not None and width not in VECTOR_WIDTHS:
         notes.append(f"{_WIDTH}={width} would crash Mesa and is ignored; {' and '.join(VECTOR_WIDTHS)} work")
         wanted[_WIDTH] = width = None
+    if software:
+        driver = os.environ.get(_DRIVER)
+        if driver and driver not in _SOFTWARE:
+            notes.append(f"{_DRIVER}={driver} is no software renderer and is ignored")
+            wanted[_DRIVER] = None
+        for name in _OVERRIDES:
+            if name in os.environ:
+                notes.append(f"{name}={os.environ[name]} could crash Mesa and is ignored")
+                wanted[name] = None
     if _SHADERS not in os.environ:
         # Mesa's cache does not tell vector widths apart, so each has a folder of its own.
         folder = cache.folder(f"shaders-{width}" if width else "shaders")

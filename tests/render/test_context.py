@@ -311,6 +311,19 @@ class TestMesaSettings:
         guarded = rendered(MESA_SHADER_CACHE_DISABLE="true", LP_NATIVE_VECTOR_WIDTH="512")
         assert guarded["picture"] == plain["picture"] and len(guarded["notes"]) == 1
 
+    @pytest.mark.parametrize(
+        "name", ["GALLIUM_DRIVER", "MESA_GL_VERSION_OVERRIDE", "MESA_GLSL_VERSION_OVERRIDE"]
+    )
+    def test_what_would_crash_a_software_renderer_is_ignored(self, bare, monkeypatch, name):
+        monkeypatch.setenv(name, "1.1")
+        variables, notes = mesa.settings()
+        assert variables[name] is None and len(notes) == 1 and f"{name}=1.1" in notes[0]
+        assert name not in mesa.settings(software=False)[0]
+
+    def test_a_driver_that_crashes_does_not(self):
+        found = rendered(GALLIUM_DRIVER="nonsense", MESA_GLSL_VERSION_OVERRIDE="110")
+        assert found["canonical"] and len(found["notes"]) == 2
+
     def test_each_width_has_its_own_shaders(self, bare, monkeypatch, tmp_path):
         monkeypatch.setenv("LIETOOL_CACHE_DIR", str(tmp_path))
         monkeypatch.setenv("LP_NATIVE_VECTOR_WIDTH", "128")
