@@ -15,13 +15,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import Image, UnidentifiedImageError
 from PIL.PngImagePlugin import PngImageFile, PngInfo
 
 from lietool import atomic
 from lietool.golden import numbers as numbers_
 
 LABELS = "labels"
+_TooLarge = Image.DecompressionBombError
 _SHA = "numbers-sha256"
 _KEYS = "label-keys"
 
@@ -197,8 +198,12 @@ def write(
 def _bytes(place: Place) -> tuple[bytes, bytes]:
     found = {}
     for path in (place.png, place.json):
-        with contextlib.suppress(FileNotFoundError, NotADirectoryError):
+        try:
             found[path] = path.read_bytes()
+        except (FileNotFoundError, NotADirectoryError):
+            continue
+        except OSError as error:
+            raise GoldenError("torn", f"{path} cannot be read ({error.strerror})") from error
     if not found:
         raise GoldenError("missing", f"there is no golden at {place.png}")
     for path in (place.png, place.json):
@@ -212,8 +217,11 @@ def _bytes(place: Place) -> tuple[bytes, bytes]:
 def _undamaged(path: Path) -> Iterator[None]:
     try:
         yield
+    except UnidentifiedImageError as error:
+        # Pillow names the bytes in memory, which tells nobody anything.
+        raise GoldenError("torn", f"{path} cannot be decoded (it is no PNG)") from error
     # All that Pillow raises for a file that is cut or changed.
-    except (OSError, SyntaxError, ValueError, EOFError, IndexError, zlib.error) as error:
+    except (OSError, SyntaxError, ValueError, EOFError, IndexError, zlib.error, _TooLarge) as error:
         raise GoldenError("torn", f"{path} cannot be decoded ({error})") from error
 
 

@@ -89,6 +89,22 @@ def test_a_file_cut_anywhere_or_with_any_byte_changed_is_never_taken_for_a_golde
         assert kind(place) in ("torn", "half accepted")
 
 
+def test_what_is_no_picture_at_all_is_torn(place):
+    write(place)
+    place.png.write_bytes(b"hello")
+    with pytest.raises(store.GoldenError, match="it is no PNG"):
+        store.read(place)
+    place.png.unlink()
+    place.png.mkdir()
+    assert kind(place) == kind(place, store.provenance) == "torn"
+
+
+def test_a_picture_too_large_to_decode_is_torn(place, monkeypatch):
+    write(place)
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 1)
+    assert kind(place) == "torn"
+
+
 def test_a_picture_of_another_mode_is_torn(place):
     write(place)
     Image.new("RGBA", (4, 4)).save(place.png)
