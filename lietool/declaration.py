@@ -4,7 +4,9 @@ Everything is checked when the file is loaded, so that a mistake is found before
 """
 
 import inspect
+import math
 import re
+import sys
 import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,6 +18,9 @@ from lietool.parameter import Parameter, nearest
 
 # The options that every figure command has; no parameter may be called so.
 RESERVED = ("output", "size", "draft", "json", "plate", "backend", "help")
+
+# Of an animation: one that is longer would never end, or has frames longer than a GIF can say.
+_MOST_FRAMES, _LONGEST = 1000, 600.0
 
 
 class FigureError(ValueError):
@@ -159,6 +164,10 @@ def _checked(
     help_text = inspect.getdoc(function) or ""
     summary = help_text.partition("\n")[0].strip()
     if not summary:
+        if sys.flags.optimize > 1:
+            raise ValueError(
+                "Python leaves out docstrings, which figures need. Start it without -OO and PYTHONOPTIMIZE=2"
+            )
         raise ValueError(
             f"{function.__name__} has no docstring. Its first line is shown by lietool --help; write one"
         )
@@ -191,7 +200,16 @@ def _check_plates(figure: Figure) -> None:
             'no plates. Write @figure(plates={"ID": Plate(title=..., equations=(), caption=...)})'
         )
     first = next(iter(figure.plates))
+    if len({str(plate_id).lower() for plate_id in figure.plates}) < len(figure.plates):
+        raise ValueError(
+            "two plates have ids that differ only in case, which the command line does not tell apart. "
+            "Rename one"
+        )
     for plate_id, plate in figure.plates.items():
+        if not isinstance(plate_id, str) or not isinstance(plate, Plate):
+            raise ValueError(
+                f"plates must map texts to Plate(...); got {plate_id!r}: {type(plate).__name__}. Correct it"
+            )
         # The id is a file name and a word on the command line.
         if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9.-]*", plate_id):
             raise ValueError(f"plate {plate_id!r} must be named by letters, digits, '.' and '-'. Rename it")
@@ -205,6 +223,13 @@ def _check_plates(figure: Figure) -> None:
                 "Make them the defaults of the function"
             )
         tolerance = plate.tolerance
+        limits = (tolerance.pixels, tolerance.delta_e, tolerance.lowpass, tolerance.relative)
+        # With a limit that is NaN every picture would pass.
+        if not all(math.isfinite(limit) and limit >= 0 for limit in limits):
+            raise ValueError(
+                f"plate {plate_id}: the limits of a tolerance must be finite and at least 0; got {limits}. "
+                "Correct them"
+            )
         if tolerance != Tolerance(because=tolerance.because) and not tolerance.because.strip():
             raise ValueError(
                 f"plate {plate_id} has a tolerance of its own. Say why: Tolerance(..., because='...')"
@@ -228,5 +253,8 @@ def _check_time(time: Time, parameters: Sequence[Parameter]) -> None:
             raise ValueError(
                 f"time goes outside of its parameter: {time.param} {error}. Shorten it"
             ) from None
-    if time.frames < 2 or not time.seconds > 0:
-        raise ValueError("time must have at least 2 frames and take more than 0 seconds. Correct it")
+    if not 2 <= time.frames <= _MOST_FRAMES or not 0 < time.seconds <= _LONGEST:
+        raise ValueError(
+            f"time must have 2 to {_MOST_FRAMES} frames and take up to {_LONGEST:g} seconds, more than 0;"
+            f" got {time.frames} and {time.seconds:g}. Correct it"
+        )

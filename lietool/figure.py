@@ -124,7 +124,14 @@ def load(name: str, within: Sequence[Path] | None = None) -> Figure:
     """
     file = _file(name, within)
     plates = _outline(file).plates
-    module = _module(file)
+    try:
+        module = _module(file)
+    except FigureError:
+        raise
+    except ImportError as error:
+        raise FigureError(f"{file}: {error}. Install what is missing, or correct the import") from error
+    except ValueError as error:
+        raise FigureError(f"{file}: {error}") from error
     figures = [
         item
         for item in vars(module).values()

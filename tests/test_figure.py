@@ -191,6 +191,34 @@ def test_a_malformed_vector_is_refused(project: Path, text: str) -> None:
             "plate A has a tolerance of its own. Say why",
         ),
         (
+            _tiny(
+                arguments='plates={"A": Plate("T", (), "C.", '
+                'tolerance=Tolerance(delta_e=float("nan"), because="b"))}'
+            ),
+            "plate A: the limits of a tolerance must be finite and at least 0; got (8, nan, 1.5, 1e-09)",
+        ),
+        (
+            _tiny(arguments='plates={"A": Plate("T", (), "C."), "a": Plate("T", (), "C.")}'),
+            "two plates have ids that differ only in case",
+        ),
+        (_tiny(arguments='plates={"A": None}'), "plates must map texts to Plate(...); got 'A': NoneType"),
+        (
+            _tiny('a: Annotated[int, Param("a")] = 10**400'),
+            "parameter a has a default that must be a whole number",
+        ),
+        (
+            _tiny(
+                'a: Annotated[float, Param("a", "", 0, 1)] = 0.0',
+                'plates={"A": Plate("T", (), "C.")}, time=Time("a", 0, 1, frames=10**9)',
+            ),
+            "time must have 2 to 1000 frames",
+        ),
+        (
+            _tiny().replace("@", "import nosuchpackage\n    @", 1),
+            "No module named 'nosuchpackage'. Install what is missing",
+        ),
+        (_tiny().replace("@", "float('x')\n    @", 1), "could not convert string to float: 'x'"),
+        (
             _tiny(arguments='plates={"A": Plate("T", (), "C.")}, time=Time("a", 0, 1)'),
             "time is 'a', which must be",
         ),
