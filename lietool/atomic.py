@@ -4,6 +4,9 @@ import os
 import tempfile
 from pathlib import Path
 
+# Of the name, in the temporary one: a name may be 255 bytes long, and a character takes up to four.
+_STEM = 40
+
 
 def write_bytes(path: Path, data: bytes) -> None:
     """Write `data` to `path` so that a kill at any moment leaves no torn file.
@@ -22,7 +25,7 @@ def write_bytes(path: Path, data: bytes) -> None:
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     # In the same folder, since a rename is atomic only within one file system.
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    handle, name = tempfile.mkstemp(prefix=f".{path.name[:_STEM]}.", suffix=".part", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)

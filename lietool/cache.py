@@ -21,7 +21,11 @@ def wanted() -> Path:
         An absolute path; nothing is made.
     """
     if own := os.environ.get("LIETOOL_CACHE_DIR"):
-        return Path(own).absolute()
+        try:
+            return Path(own).absolute()
+        except FileNotFoundError:
+            # Relative to a folder that has been removed under us.
+            return _temporary()
     # The XDG specification says that a relative path is to be ignored.
     xdg = Path(os.environ.get("XDG_CACHE_HOME", ""))
     if xdg.is_absolute():

@@ -1,6 +1,7 @@
 """From the command line to a figure or a verb; whatever goes wrong is one line."""
 
 import ast
+import contextlib
 import importlib
 import os
 import shlex
@@ -29,6 +30,7 @@ Three things to try:
 def main() -> None:
     """Run the command line of this process."""
     sys.excepthook = _report_bug
+    _open_closed_streams()
     command.main()
 
 
@@ -89,7 +91,11 @@ class _Lietool(click.Group):
     ) -> Any:
         arguments = list(sys.argv[1:] if args is None else args)
         if instruction := os.environ.get(_COMPLETE):
-            sys.exit(shell_complete(self, {}, "lietool", _COMPLETE, instruction))
+            try:
+                sys.exit(shell_complete(self, {}, "lietool", _COMPLETE, instruction))
+            except (OSError, KeyError, ValueError):
+                # Nobody asked for a message: there is nothing to complete.
+                sys.exit(1)
         sys.exit(self._code(arguments, extra))
 
     def _code(self, arguments: list[str], extra: dict[str, Any]) -> int:
@@ -105,6 +111,10 @@ class _Lietool(click.Group):
             return result if isinstance(result, int) else 0
         except click.exceptions.Exit as stop:
             return stop.exit_code
+        except SystemExit as stop:
+            # Not even one with 0 is a success: whatever should have come after it did not.
+            text = f"the figure ended the process, by exit({stop.code!r}). Raise ValueError in it instead"
+            return _say(f"{path}: {text}", 1)
         except (click.Abort, KeyboardInterrupt):
             click.echo(err=True)
             return 130
@@ -116,7 +126,9 @@ class _Lietool(click.Group):
             return _say(_message(error, path), error.exit_code)
         except OSError as error:
             return _say(
-                f"{path}: {error.strerror or error}{f': {error.filename}' if error.filename else ''}", 2
+                f"{path}: {error.strerror or error or type(error).__name__}"
+                f"{f': {error.filename}' if error.filename else ''}",
+                2,
             )
         except ValueError as error:
             return _say(f"{path}: {_one_line(error)}", 2)
@@ -177,8 +189,17 @@ def _one_line(text: object) -> str:
 def _say(text: str, code: int) -> int:
     if os.environ.get(TRACEBACK) and sys.exc_info()[0] is not None:
         traceback.print_exc()
-    click.echo(text, err=True)
+    # Where nobody can read it, the exit code still says it.
+    with contextlib.suppress(OSError):
+        click.echo(text, err=True)
     return code
+
+
+def _open_closed_streams() -> None:
+    """Give a process that was started with a closed stream the null device in its place."""
+    for name in ("stdin", "stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open("r+", encoding="utf-8"))  # noqa: SIM115
 
 
 def _report_bug(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:

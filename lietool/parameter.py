@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 _NUMBER_WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
+# A message is one line: of a longer value only the beginning is shown.
+_LONGEST = 60
 _KINDS = {float: "float", int: "int", str: "str", bool: "bool", Path: "path"}
 
 
@@ -115,7 +117,8 @@ class Parameter:
                     value = text
             return self.check(value)
         except (ValueError, KeyError):
-            raise ValueError(f"must be {self.wanted}; got {text!r}") from None
+            shown = text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+            raise ValueError(f"must be {self.wanted}; got {shown!r}") from None
 
     def check(self, value: Any) -> Any:
         """Return the value in the parameter's own type.
@@ -154,7 +157,11 @@ class Parameter:
         high = math.inf if self.param.high is None else self.param.high
         if isinstance(value, bool) or not isinstance(value, Real):
             return False
-        return math.isfinite(value) and low <= float(value) <= high
+        try:
+            number = float(value)
+        except OverflowError:
+            return False
+        return math.isfinite(number) and low <= number <= high
 
 
 def read(name: str, annotation: Any, default: Any) -> Parameter:

@@ -16,7 +16,7 @@ from PIL import Image, ImageSequence
 import lietool
 from lietool import atomic, figure, paths
 from lietool.cli import command
-from lietool.render import context
+from lietool.render import context, draw
 from lietool.verbs import _command, _picture, bench
 
 _BALL = '''
@@ -49,7 +49,8 @@ def ball(
     if not any(q0):
         raise ValueError("quaternion.normalize: q must be different from zero; got 0.")
     if dent:
-        raise [KeyError("a bug"), KeyboardInterrupt(), OSError(2, "No such file", "x.obj")][dent - 1]
+        missing = OSError(2, "No such file", "x.obj")
+        raise [KeyError("a bug"), KeyboardInterrupt(), missing, SystemExit(0)][dent - 1]
     angle = np.radians(turn)
     place = np.array([[32 + 16 * np.cos(angle), 24 + 16 * np.sin(angle), 0]])
     record = Points(place, {"red": "#c8372d", "blue": "#2b66b1"}[hue], radius=6, shaded=shaded)
@@ -155,7 +156,8 @@ def test_the_common_options_are_the_reserved_names(folder: Path) -> None:
     assert names == {"-o", *(f"--{name}" for name in figure.RESERVED)}
 
 
-def test_backends_are_those_of_the_renderer() -> None:
+def test_backends_and_sizes_are_those_of_the_renderer() -> None:
+    assert _command.LARGEST == draw.LARGEST
     assert _command.BACKENDS == context.BACKENDS
 
 
@@ -235,7 +237,24 @@ def test_values_that_begin_with_a_minus(folder: Path) -> None:
         ("ball --turn", " ball: Option '--turn' requires an argument."),
         (
             "ball --size 0x3",
-            " ball: --size must be width x height in pixels; got '0x3'. Write for example --size 1200x900",
+            " ball: --size must be width x height in pixels, each 1 to 20000; got '0x3'. "
+            "Write for example --size 1200x900",
+        ),
+        (
+            "ball --size 20001x3",
+            " ball: --size must be width x height in pixels, each 1 to 20000; got '20001x3'. "
+            "Write for example --size 1200x900",
+        ),
+        (
+            f"ball --dent {'9' * 400}",
+            f" ball: --dent must be a whole number, at least 0; got '{'9' * 60}...'. "
+            "Write for example --dent 0",
+        ),
+        ("ball --output=", " ball: --output '' is a folder. Write a file name, ending in .png or .gif"),
+        ("ball -o a.png/", " ball: --output a.png/ is a folder. Write a file name, ending in .png or .gif"),
+        (
+            f"ball -o {'a' * 300}.png",
+            f" ball: --output {'a' * 300}.png: File name too long. Choose another name",
         ),
         ("ball -o a.pdf", " ball: --output must end in .png or .gif; got 'a.pdf'"),
         ("ball -o no/a.png", " ball: --output no/a.png: there is no folder no. Make it first"),
@@ -338,6 +357,28 @@ def test_a_bug_is_one_line_and_its_traceback_can_be_had(folder: Path) -> None:
     result = _start("ball", "--q0", "0,0,0,0", "--json", LIETOOL_TRACEBACK="1")
     assert result.returncode == 2
     assert "Traceback" in result.stderr
+
+
+def test_a_figure_that_ends_the_process_is_no_success(folder: Path) -> None:
+    result = _run("ball", "--dent", "4", "--json")
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert result.stderr == (
+        "lietool ball: the figure ended the process, by exit(0). Raise ValueError in it instead\n"
+    )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell's way to close a stream")
+@pytest.mark.parametrize("words", ["ball", "ball --json", "figures list", ""])
+def test_a_closed_output_is_no_error(folder: Path, words: str) -> None:
+    call = f'exec "$0" -m lietool {words} >&-'
+    result = subprocess.run(["sh", "-c", call, sys.executable], stderr=subprocess.PIPE, text=True, timeout=60)
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_a_name_as_long_as_it_may_be(folder: Path) -> None:
+    name = "é" * 120 + ".png"
+    assert _run("still", "-o", name).exit_code == 0
+    assert [path.name for path in folder.iterdir()] == [name]
 
 
 def test_a_reader_who_leaves_is_no_error(folder: Path) -> None:

@@ -10,8 +10,9 @@ from click.shell_completion import CompletionItem
 from lietool.figure import Figure, Parameter, nearest, plates
 from lietool.verbs import _picture
 
-# Repeated here so that completion need not load OpenGL; a test compares it with `render.context`.
+# Repeated here so that completion need not load OpenGL; a test compares them with `render`.
 BACKENDS = ("osmesa", "egl", "gpu", "system")
+LARGEST = 20000
 _METAVARS = {"float": "NUMBER", "int": "N", "str": "TEXT", "path": "FILE"}
 
 
@@ -134,10 +135,13 @@ class _Size(click.ParamType):
     name = "size"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        if match := re.fullmatch(r"([1-9][0-9]{0,5})[xX]([1-9][0-9]{0,5})", value):
-            return int(match[1]), int(match[2])
+        if match := re.fullmatch(r"([1-9][0-9]{0,4})[xX]([1-9][0-9]{0,4})", value):
+            width, height = int(match[1]), int(match[2])
+            if width <= LARGEST and height <= LARGEST:
+                return width, height
         raise click.UsageError(
-            f"--size must be width x height in pixels; got {value!r}. Write for example --size 1200x900",
+            f"--size must be width x height in pixels, each 1 to {LARGEST}; got {value!r}. "
+            "Write for example --size 1200x900",
             ctx,
         )
 

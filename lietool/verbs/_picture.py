@@ -56,7 +56,9 @@ def make(
         Parameters that were given explicitly: an animation must not sweep them.
     """
     values = figure.check(params)
-    target = None if numbers and output is None else _target(output or f"{figure.name}.png")
+    target = (
+        None if numbers and output is None else _target(f"{figure.name}.png" if output is None else output)
+    )
     frames = None
     if target and target.suffix.lower() == ".gif":
         frames = _time(figure, swept)
@@ -77,9 +79,14 @@ def make(
 def _target(output: str) -> Path:
     """The file to write, refused before any work is done where that is possible."""
     path = Path(output)
-    if path.is_dir():
+    try:
+        # A pathlib path forgets the slash at the end, by which somebody means a folder.
+        is_folder = path.is_dir() or output.endswith(("/", os.sep))
+    except OSError as error:
+        raise click.UsageError(f"--output {output}: {error.strerror}. Choose another name") from None
+    if is_folder:
         raise click.UsageError(
-            f"--output {output} is a folder. Write a file name, ending in {' or '.join(ENDINGS)}"
+            f"--output {output or repr('')} is a folder. Write a file name, ending in {' or '.join(ENDINGS)}"
         )
     if path.suffix.lower() not in ENDINGS:
         raise click.UsageError(f"--output must end in {' or '.join(ENDINGS)}; got {output!r}")
