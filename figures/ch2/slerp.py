@@ -46,7 +46,7 @@ def slerp(
     quaternions that holds the arc; with q0 other than 1 the whole picture is
     carried to q0 by multiplication from the right (2.33).
     """
-    start, end = quaternion.normalize(np.array([q0, q1]))
+    start, end = _unit("q0", q0), _unit("q1", q1)
     line = quaternion.log(quaternion.multiply(end, quaternion.conjugate(start)))
     theta = float(np.linalg.norm(line))
     u = line / theta if theta > 1e-12 else np.array([1.0, 0.0, 0.0])
@@ -75,6 +75,16 @@ def slerp(
         at_one=bool(np.allclose(start, (1.0, 0.0, 0.0, 0.0))),
     )
     return Drawing(_picture(shown), numbers)
+
+
+def _unit(name: str, q: Quaternion) -> np.ndarray:
+    try:
+        return quaternion.normalize(np.array(q))
+    except ValueError:
+        raise ValueError(
+            f"slerp: {name} must have a length of 1e-150 to 1e150; got {q}. "
+            "Write a quaternion of ordinary size, such as 1,0,0,0"
+        ) from None
 
 
 class _Slice:
