@@ -3,6 +3,7 @@
 import contextlib
 import os
 import re
+import shutil
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,8 @@ _SOFTWARE = ("llvmpipe", "softpipe")
 # With less than they are, they crash or refuse.
 _OVERRIDES = ("MESA_GL_VERSION_OVERRIDE", "MESA_GLSL_VERSION_OVERRIDE", "MESA_EXTENSION_OVERRIDE")
 
+# Mesa maps the index of its cache into memory: where the disk cannot hold it, writing kills the process.
+_ROOM = 16 * 2**20
 _DRIVER, _WIDTH = "GALLIUM_DRIVER", "LP_NATIVE_VECTOR_WIDTH"
 _SHADERS, _LOG = "MESA_SHADER_CACHE_DIR", "EGL_LOG_LEVEL"
 _LIBRARIES = re.compile(r"lib(OSMesa|E?GL|glapi|gallium|LLVM|nvidia|Open)|(_dri|_drv)\.so")
@@ -58,6 +61,9 @@ def settings(*, software: bool = True) -> tuple[dict[str, str | None], list[str]
         # Mesa's cache does not tell vector widths apart, so each has a folder of its own.
         folder = cache.folder(f"shaders-{width}" if width else "shaders")
         wanted |= {} if folder is None else {_SHADERS: str(folder)}
+        if folder and shutil.disk_usage(folder).free < _ROOM:
+            notes.append(f"the disk of {folder} is full; compiled shaders are not kept")
+            wanted["MESA_SHADER_CACHE_DISABLE"] = "true"
     if _LOG not in os.environ:
         # A backend that does not work is reported by us, in one line, if none works.
         wanted[_LOG] = "fatal"

@@ -340,6 +340,13 @@ class TestMesaSettings:
         monkeypatch.setenv("MESA_SHADER_CACHE_DIR", str(tmp_path))
         assert "MESA_SHADER_CACHE_DIR" not in mesa.settings()[0]
 
+    def test_a_full_disk_keeps_no_shaders(self, bare, monkeypatch, tmp_path):
+        monkeypatch.setenv("LIETOOL_CACHE_DIR", str(tmp_path))
+        assert "MESA_SHADER_CACHE_DISABLE" not in mesa.settings()[0]
+        monkeypatch.setattr(mesa, "_ROOM", 2**80)
+        variables, notes = mesa.settings()
+        assert variables["MESA_SHADER_CACHE_DISABLE"] == "true" and "is full" in notes[0]
+
     def test_the_environment_is_put_back(self, bare, monkeypatch):
         monkeypatch.setenv("LP_NUM_THREADS", "1")
         before = dict(os.environ)
