@@ -9,6 +9,9 @@ from lietool.render import solids, style
 from lietool.render.camera import Box, Camera, Page, project
 from lietool.render.scene import Arrow, Frame, Label, Lines, Points, Record, Surface, Tube
 
+# More than any page has pixels; a dash that is finer would only take time.
+_MOST_DASHES = 20000
+
 MATERIALS = {"flat": 0.0, "matte": 1.0, "glass": 2.0}
 
 
@@ -86,9 +89,12 @@ def _(record: Label, lens: Lens) -> list[Batch]:
 @batches.register
 def _(record: Surface, lens: Lens) -> list[Batch]:
     vertices = _finite(record.vertices, "Surface.vertices")
-    faces = np.asarray(record.faces, int).reshape(-1, 3)
+    faces = _faces(record.faces, len(vertices))
     if not len(faces):
         return []
+    if record.material not in MATERIALS:
+        known = ", ".join(MATERIALS)
+        raise ValueError(f"draw.render: Surface.material must be one of {known}; got {record.material!r}")
     corners = vertices[faces]
     if record.normals is None:
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -189,6 +195,22 @@ def _finite(values: object, name: str) -> np.ndarray:
     return array
 
 
+def _faces(values: object, count: int) -> np.ndarray:
+    faces = np.asarray(values)
+    if faces.size == 0:
+        return np.zeros((0, 3), int)
+    if faces.dtype.kind not in "iu" or faces.ndim != 2 or faces.shape[1] != 3:
+        raise ValueError(
+            f"draw.render: Surface.faces must be whole numbers (n, 3); got {faces.dtype} {faces.shape}"
+        )
+    if faces.min() < 0 or faces.max() >= count:
+        raise ValueError(
+            f"draw.render: Surface.faces must be indices of its {count} vertices, from 0; "
+            f"got {faces.min()} to {faces.max()}"
+        )
+    return faces
+
+
 def _runs(points: np.ndarray) -> list[slice]:
     broken = np.flatnonzero(~np.isfinite(points).all(axis=1))
     starts = np.concatenate([[0], broken + 1])
@@ -220,6 +242,11 @@ def _dashed(
             continue
         # Whole strokes: both ends of the line end in ink.
         count = max(round((length[-1] + gap) / (stroke + gap)), 1)
+        if count > _MOST_DASHES:
+            raise ValueError(
+                f"draw.render: Lines.dash must make at most {_MOST_DASHES} strokes of a line; "
+                f"got {dash}, which makes {count}"
+            )
         scale = length[-1] / (count * (stroke + gap) - gap)
         for i in range(count):
             first = i * (stroke + gap) * scale

@@ -123,6 +123,8 @@ class _Prepared:
 
 def _prepare(view: View, page: Box, unit: float) -> _Prepared:
     box = view.box or page
+    if not (np.isfinite(box).all() and box[2] > 0.0 and box[3] > 0.0):
+        raise ValueError(f"draw.render: View.box must be x, y and a width and height above 0; got {box}")
     flat = isinstance(view.camera, Page)
     lens = Lens(view.camera, box, unit)
     found = [batch for record in view.records for batch in batches(record, lens)]

@@ -7,6 +7,8 @@ their colours takes the darker `AXES_TEXT`.  Widths and sizes are in page units:
 picture is 1200 x 900 of them unless it says otherwise.
 """
 
+import re
+
 import numpy as np
 
 PAPER = "#ffffff"
@@ -66,6 +68,8 @@ def linear(color: str | tuple[float, ...], alpha: float = 1.0) -> np.ndarray:
         Linear red, green, blue and the opacity (not premultiplied).
     """
     if isinstance(color, str):
+        if not re.fullmatch("#[0-9A-Fa-f]{6}", color):
+            raise ValueError(f"style.linear: color must be #rrggbb; got {color!r}. Take one of style's own")
         srgb = np.array([int(color[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
     else:
         srgb = np.asarray(color, float)[:3]

@@ -411,6 +411,35 @@ class TestRefused:
         with pytest.raises(ValueError, match=r"^draw\.render: Lines\.dash must be "):
             page(Lines([(0, 0, 0), (9, 9, 0)], "#000000", dash=dash))
 
+    @pytest.mark.parametrize(
+        ("changed", "message"),
+        [
+            ({"faces": [(0, 1, 3)]}, "faces must be indices of its 3 vertices, from 0; got 0 to 3"),
+            ({"faces": [(0, 1, -1)]}, "faces must be indices of its 3 vertices, from 0; got -1 to 1"),
+            ({"faces": [(0, 1, 1.5)]}, r"faces must be whole numbers \(n, 3\); got float64 \(1, 3\)"),
+            ({"material": "wood"}, "material must be one of flat, matte, glass; got 'wood'"),
+        ],
+    )
+    def test_a_surface_that_is_none(self, changed, message):
+        parts = {"vertices": np.eye(3), "faces": [(0, 1, 2)], "color": "#000000"} | changed
+        with pytest.raises(ValueError, match=rf"^draw\.render: Surface\.{message}"):
+            page(Surface(**parts))
+
+    def test_a_dash_too_fine_to_see(self):
+        with pytest.raises(ValueError, match=r"^draw\.render: Lines\.dash must make at most 20000 strokes"):
+            page(Lines([(0, 0, 0), (9, 9, 0)], "#000000", dash=(1e-9, 1e-9)))
+
+    @pytest.mark.parametrize("color", ["red", "#12345", "#1234567", "#12345g"])
+    def test_a_colour_that_is_none(self, color):
+        with pytest.raises(ValueError, match=r"color must be #rrggbb; got "):
+            page(Points([(0, 0, 0)], color))
+
+    @pytest.mark.parametrize("box", [(0, 0, 0, 0), (0, 0, -5, 5), (0, 0, np.nan, 5)])
+    def test_a_box_without_area(self, box):
+        picture = Picture((View((Points([(0, 0, 0)], "#000000"),), box=box),), (9, 9))
+        with pytest.raises(ValueError, match=r"^draw\.render: View\.box must be "):
+            draw.render(picture)
+
     def test_what_is_no_record(self):
         with pytest.raises(TypeError, match=r"record must be one of scene\.Record; got str"):
             page("x")  # type: ignore[arg-type]
