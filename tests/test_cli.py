@@ -50,7 +50,7 @@ def ball(
         raise ValueError("quaternion.normalize: q must be different from zero; got 0.")
     if dent:
         missing = OSError(2, "No such file", "x.obj")
-        raise [KeyError("a bug"), KeyboardInterrupt(), missing, SystemExit(0)][dent - 1]
+        raise [KeyError("a bug"), KeyboardInterrupt(), missing, SystemExit(0), MemoryError()][dent - 1]
     angle = np.radians(turn)
     place = np.array([[32 + 16 * np.cos(angle), 24 + 16 * np.sin(angle), 0]])
     record = Points(place, {"red": "#c8372d", "blue": "#2b66b1"}[hue], radius=6, shaded=shaded)
@@ -233,6 +233,7 @@ def test_values_that_begin_with_a_minus(folder: Path) -> None:
         ("ball --q0 0,0,0,0", " ball: quaternion.normalize: q must be different from zero; got 0."),
         ("ball --mesh x.obj", " ball: --mesh must be a file that exists; got 'x.obj'."),
         ("ball --dent 3", " ball: No such file: x.obj"),
+        ("ball --dent 5", " ball: not enough memory. Make a smaller picture with --size"),
         ("ball 3", " ball: Got unexpected extra argument (3). See lietool ball --help"),
         ("ball --turn", " ball: Option '--turn' requires an argument."),
         (
