@@ -1,5 +1,6 @@
 """Files that are either the old one or the new one, never half of each."""
 
+import errno
 import os
 import tempfile
 from pathlib import Path
@@ -14,7 +15,8 @@ def write_bytes(path: Path, data: bytes) -> None:
     Parameters
     ----------
     path : Path
-        The file to write; its folder is made if it is missing.
+        The file to write; its folder is made if it is missing.  Behind a link it is
+        the file that the link leads to, and a file that is there keeps its mode.
     data : bytes
         The whole content.
 
@@ -23,7 +25,9 @@ def write_bytes(path: Path, data: bytes) -> None:
     OSError
         If the folder cannot be made or written; nothing is left behind.
     """
+    path = path.resolve()
     path.parent.mkdir(parents=True, exist_ok=True)
+    mode = _mode(path)
     # In the same folder, since a rename is atomic only within one file system.
     handle, name = tempfile.mkstemp(prefix=f".{path.name[:_STEM]}.", suffix=".part", dir=path.parent)
     try:
@@ -31,11 +35,20 @@ def write_bytes(path: Path, data: bytes) -> None:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        # mkstemp makes private files; a picture should be as readable as any other file.
-        umask = os.umask(0)
-        os.umask(umask)
-        Path(name).chmod(0o666 & ~umask)
+        Path(name).chmod(mode)
         Path(name).replace(path)
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
+
+
+def _mode(path: Path) -> int:
+    """The mode of the file that is there, or that of any new file: a temporary one is private."""
+    if path.exists():
+        # A rename asks only for the folder; who made a file read-only wants it kept.
+        if not os.access(path, os.W_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+        return path.stat().st_mode & 0o777
+    umask = os.umask(0)
+    os.umask(umask)
+    return 0o666 & ~umask

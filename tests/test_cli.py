@@ -485,3 +485,25 @@ def test_the_benchmark_draws_every_plate(folder: Path) -> None:
     assert found["plates"].keys() == {"T1", "T1b", "S1"}
     assert found["megabytes"]["three times"] >= found["megabytes"]["once"] > 0
     assert "work" not in _run("bench", "--help").stdout
+
+
+class TestWriting:
+    def test_a_link_stays_a_link_and_a_file_keeps_its_mode(self, tmp_path: Path) -> None:
+        target, link = tmp_path / "there.png", tmp_path / "link.png"
+        target.write_bytes(b"old")
+        target.chmod(0o640)
+        link.symlink_to(target)
+        atomic.write_bytes(link, b"new")
+        assert link.is_symlink()
+        assert target.read_bytes() == b"new"
+        assert target.stat().st_mode & 0o777 == 0o640
+
+    @pytest.mark.skipif(os.geteuid() == 0, reason="root may write what is read-only")
+    def test_a_file_that_is_read_only_is_left_alone(self, tmp_path: Path) -> None:
+        target = tmp_path / "kept.png"
+        target.write_bytes(b"old")
+        target.chmod(0o444)
+        with pytest.raises(PermissionError):
+            atomic.write_bytes(target, b"new")
+        assert target.read_bytes() == b"old"
+        assert [path.name for path in tmp_path.iterdir()] == ["kept.png"]

@@ -82,7 +82,7 @@ def _unit(name: str, q: Quaternion) -> np.ndarray:
         return quaternion.normalize(np.array(q))
     except ValueError:
         raise ValueError(
-            f"slerp: {name} must have a length of 1e-150 to 1e150; got {q}. "
+            f"{name} must have a length of 1e-150 to 1e150; got {q}. "
             "Write a quaternion of ordinary size, such as 1,0,0,0"
         ) from None
 

@@ -49,7 +49,9 @@ def exp_singularity(
         float,
         Param("direction of the marked rotation vector in the plane of the stages", "deg", -360.0, 360.0),
     ] = -50.0,
-    shells: Annotated[int, Param("number of shells in the stages", low=1, high=3)] = 3,
+    shells: Annotated[
+        int, Param("number of shells in the stages; a longer turn brings more", low=1, high=3)
+    ] = 3,
     aside: Annotated[
         float, Param("rotation about z that moves the second path off I", "deg", 1.0, 60.0)
     ] = 20.0,
@@ -66,11 +68,8 @@ def exp_singularity(
         if turn > 720.0:
             raise ValueError(f"the paths end at a turn of 720 degrees; got {turn:g}. Turn less")
         return _exp_paths.drawing(np.deg2rad(turn), np.deg2rad(aside))
-    if turn > 360.0 * shells:
-        raise ValueError(
-            f"turn must lie inside the shells, at most {360 * shells} degrees for {shells}; "
-            f"got {turn:g}. Use more shells, or turn less"
-        )
+    # As many shells as the turn needs: a marked point outside of them all would have nowhere to go.
+    shells = max(shells, int(np.ceil(turn / 360.0)))
     return _stages(_polar(np.deg2rad(turn), np.deg2rad(azimuth)), shells)
 
 

@@ -53,7 +53,7 @@ def run(
     for item in _table.progress(items, "verifying"):
         try:
             results.append(_verify(item, studio, failed))
-        except ValueError as error:
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
             # Its own parameters were drawn once; the other plates still have to be judged.
             found = verdict.Finding("undrawn", f"cannot be drawn any more: {error}")
             results.append(Result(item, verdict.Verdict((found,))))
