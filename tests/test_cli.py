@@ -399,7 +399,9 @@ def test_ctrl_c_in_the_middle(folder: Path) -> None:
             "    return", "    import time\n    print('started', flush=True)\n    time.sleep(60)\n    return"
         )
     )
-    call = [sys.executable, "-m", "lietool", "slow"]
+    # A shell ignores the signal for what it runs in the background, and that is inherited.
+    heed = "import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); os.execv(sys.argv[1], sys.argv[1:])"
+    call = [sys.executable, "-c", heed, sys.executable, "-m", "lietool", "slow"]
     with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "started\n"
