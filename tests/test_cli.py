@@ -400,7 +400,11 @@ def test_ctrl_c_in_the_middle(folder: Path) -> None:
         )
     )
     # A shell ignores the signal for what it runs in the background, and that is inherited.
-    heed = "import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); os.execv(sys.argv[1], sys.argv[1:])"
+    heed = (
+        "import os, signal, sys\n"
+        "signal.signal(signal.SIGINT, signal.SIG_DFL)\n"
+        "os.execv(sys.argv[1], sys.argv[1:])"
+    )
     call = [sys.executable, "-c", heed, sys.executable, "-m", "lietool", "slow"]
     with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
