@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from lietool.render import labels
+from lietool.render import labels, style
 from lietool.render.camera import Box, project
 from lietool.render.scene import Label, Picture
 
@@ -51,6 +51,13 @@ def compose(
     Returns
     -------
     tuple of PlacedLabel
+
+    Raises
+    ------
+    MissingLabelError
+        If the store is strict and lacks a label.
+    ValueError
+        If a text is not mathtext, or a colour or an anchor is of no known form.
     """
     placed = []
     page: Box = (0.0, 0.0, float(picture.size[0]), float(picture.size[1]))
@@ -93,12 +100,8 @@ def _lay(
         reach, fade = max(round(_HALO_REACH * unit), 1), max(round(_HALO_FADE * unit), 1)
         soft = _halo(glyphs.coverage.tobytes(), glyphs.coverage.shape, reach, fade)
         margin = (soft.shape[0] - glyphs.coverage.shape[0]) // 2
-        _blend(image, _srgb(paper), soft * _HALO_STRENGTH, at[0] - margin, at[1] - margin)
-    _blend(image, _srgb(record.color), glyphs.coverage / 255.0, *at)
-
-
-def _srgb(color: str) -> np.ndarray:
-    return np.array([int(color[i : i + 2], 16) for i in (1, 3, 5)], float)
+        _blend(image, style.srgb(paper), soft * _HALO_STRENGTH, at[0] - margin, at[1] - margin)
+    _blend(image, style.srgb(record.color), glyphs.coverage / 255.0, *at)
 
 
 def _blend(image: np.ndarray, color: np.ndarray, coverage: np.ndarray, left: int, top: int) -> None:

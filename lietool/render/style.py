@@ -52,7 +52,29 @@ TEXT = 33.0
 TITLE_TEXT = 35.0
 
 
-def linear(color: str | tuple[float, ...], alpha: float = 1.0) -> np.ndarray:
+def srgb(color: str) -> np.ndarray:
+    """Return a hex colour as its three levels, 0 to 255.
+
+    Parameters
+    ----------
+    color : str
+        ``#rrggbb``.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+
+    Raises
+    ------
+    ValueError
+        If it is not of that form.
+    """
+    if not isinstance(color, str) or not re.fullmatch("#[0-9A-Fa-f]{6}", color):
+        raise ValueError(f"style.srgb: color must be #rrggbb; got {color!r}. Take one of style's own")
+    return np.array([int(color[i : i + 2], 16) for i in (1, 3, 5)], float)
+
+
+def linear(color: str, alpha: float = 1.0) -> np.ndarray:
     """Return an sRGB hex colour as linear RGBA.
 
     Parameters
@@ -66,14 +88,14 @@ def linear(color: str | tuple[float, ...], alpha: float = 1.0) -> np.ndarray:
     -------
     ndarray, shape (4,)
         Linear red, green, blue and the opacity (not premultiplied).
+
+    Raises
+    ------
+    ValueError
+        If the colour is not of that form.
     """
-    if isinstance(color, str):
-        if not re.fullmatch("#[0-9A-Fa-f]{6}", color):
-            raise ValueError(f"style.linear: color must be #rrggbb; got {color!r}. Take one of style's own")
-        srgb = np.array([int(color[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
-    else:
-        srgb = np.asarray(color, float)[:3]
-    rgb = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    levels = srgb(color) / 255.0
+    rgb = np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
     return np.append(rgb, alpha)
 
 

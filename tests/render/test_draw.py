@@ -433,6 +433,8 @@ class TestRefused:
     def test_a_colour_that_is_none(self, color):
         with pytest.raises(ValueError, match=r"color must be #rrggbb; got "):
             page(Points([(0, 0, 0)], color))
+        with pytest.raises(ValueError, match=r"color must be #rrggbb; got "):
+            page(Label("$x$", (0, 0, 0), color))
 
     @pytest.mark.parametrize("box", [(0, 0, 0, 0), (0, 0, -5, 5), (0, 0, np.nan, 5)])
     def test_a_box_without_area(self, box):
