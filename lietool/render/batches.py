@@ -21,7 +21,7 @@ class Batch:
 
     Parameters
     ----------
-    kind : {"surface", "glass", "lines", "points"}
+    kind : {"surface", "glass far", "glass near", "lines", "points"}
     data : ndarray of float32, shape (n, ...)
         What the shader reads for each triangle (three vertices), segment or ball.
     depth : ndarray, shape (n,)
@@ -75,7 +75,10 @@ def batches(record: Record, lens: Lens) -> list[Batch]:
     Raises
     ------
     ValueError
-        If a coordinate is NaN or infinite where it may not be.
+        If it holds what cannot be drawn: a coordinate that is NaN or infinite where it may not be, a face
+        without vertices, a material, colour or dash of no known form.
+    TypeError
+        If it is no record of `scene`.
     """
     raise TypeError(f"batches: record must be one of scene.Record; got {type(record).__name__}")
 

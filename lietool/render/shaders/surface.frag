@@ -1,5 +1,5 @@
 #version 330 core
-// 0 flat, 1 matte, 2 glass, as in draw.MATERIALS.
+// 0 flat, 1 matte, 2 glass, as in batches.MATERIALS.
 uniform float side;  // of a shell of glass: -1 the far wall, 1 the near wall
 uniform bool lens;   // false on a page, where every line of sight is along z
 in vec3 v_position;
