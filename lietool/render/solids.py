@@ -153,14 +153,13 @@ def tube(points: ArrayLike, radius: float, closed: bool = False, segments: int =
     if closed and np.linalg.norm(points[-1] - points[0]) > 1e-12:
         points = np.concatenate([points, points[:1]])
     frames = transported_frames(points, closed)
-    offset, lean, scale = np.zeros(len(points)), np.zeros(len(points)), np.ones(len(points))
+    lean, scale = np.zeros(len(points)), np.ones(len(points))
     if not closed:
         cap = np.linspace(0.0, np.pi / 2, 7)[:-1]
         frames = np.concatenate([frames[[0] * 6], frames, frames[[-1] * 6]])
         points = np.concatenate([points[[0] * 6], points, points[[-1] * 6]])
-        zeros, ones = np.zeros(len(offset)), np.ones(len(offset))
-        lean = np.concatenate([-np.cos(cap), zeros, np.cos(cap[::-1])])
-        scale = np.concatenate([np.sin(cap), ones, np.sin(cap[::-1])])
+        lean = np.concatenate([-np.cos(cap), lean, np.cos(cap[::-1])])
+        scale = np.concatenate([np.sin(cap), scale, np.sin(cap[::-1])])
     angle = np.linspace(0.0, 2.0 * np.pi, segments + 1)
     ring = np.cos(angle)[:, None] * frames[:, None, :, 0] + np.sin(angle)[:, None] * frames[:, None, :, 1]
     normals = scale[:, None, None] * ring + (lean[:, None] * frames[:, :, 2])[:, None, :]
