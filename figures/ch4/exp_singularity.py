@@ -245,7 +245,7 @@ def _half(trail: np.ndarray, azimuth: float, camera: Camera) -> list[scene.Recor
     ]
     # Opposite points of the rim are one half turn; the pair in the mark's colour is where R goes on.
     for aside, color in ((0.0, style.MARK), (np.pi / 3.0, style.GREYS[0]), (-np.pi / 3.0, style.GREYS[1])):
-        pair = _drawn(quaternion.exp(_polar(np.array([np.pi, -np.pi]) / 2.0, azimuth + aside)))
+        pair = _to_sphere(_polar([np.pi, -np.pi], azimuth + aside))
         records.append(scene.Lines(pair, color, style.THIN, dash=(6.0, 6.0)))
         records.append(scene.Points(pair, color, 8.0))
     way = _to_rotations(trail)
