@@ -18,6 +18,7 @@ SUPPORT = {"blocks", "checks", "kernels"}
 MODULES = sorted({m.name for m in pkgutil.iter_modules(lietool.lie.__path__)} - SUPPORT)
 ENTRY = re.compile(r"^(?P<name>\w+) : (?P<kind>\([^)]*\)|\{\w+\}|bool)(?:, (?P<words>.+))?$")
 BATCH = (2, 5)
+COUNT = 3  # what k stands for in a shape
 
 
 def public(module) -> list[FunctionType]:
@@ -51,7 +52,7 @@ def entries(f: Callable, title: str) -> list[tuple[str, str, str]]:
 def core(kind: str) -> tuple[int, ...]:
     dimensions = kind.strip("()").replace(" ", "").split(",")
     assert dimensions[0] == "...", f"{kind} must start with ..."
-    return tuple(int(d) for d in dimensions[1:] if d)
+    return tuple(COUNT if d == "k" else int(d) for d in dimensions[1:] if d)
 
 
 def sample(rng: np.random.Generator, kind: str, words: str) -> np.ndarray:
@@ -63,6 +64,16 @@ def sample(rng: np.random.Generator, kind: str, words: str) -> np.ndarray:
         q = q * np.sign(np.diagonal(r, axis1=-2, axis2=-1))[..., None, :]
         q[..., 0] *= np.sign(np.linalg.det(q))[..., None]
         return q
+    if domain == "rigid":
+        x[..., :-1, :-1] = sample(rng, f"(..., {x.shape[-1] - 1}, {x.shape[-1] - 1})", "rotation")
+        x[..., -1, :] = np.eye(x.shape[-1])[-1]
+        return x
+    if domain == "unit dual quaternion":
+        x /= np.linalg.norm(x[..., :4], axis=-1, keepdims=True)
+        x[..., 4:] -= np.sum(x[..., :4] * x[..., 4:], axis=-1, keepdims=True) * x[..., :4]
+        return x
+    if domain == "unit dual complex number":
+        return x / np.linalg.norm(x[..., :2], axis=-1, keepdims=True)
     if domain.startswith("unit "):
         return x / np.linalg.norm(x, axis=-1, keepdims=True)
     if domain == "skew":
@@ -79,6 +90,14 @@ def in_domain(value: np.ndarray, words: str) -> bool:
     if domain == "rotation":
         gram = np.swapaxes(value, -1, -2) @ value
         return bool(np.allclose(gram, np.eye(n), atol=1e-14) and np.all(np.linalg.det(value) > 0))
+    if domain == "rigid":
+        last = np.array_equal(value[..., -1, :], np.broadcast_to(np.eye(n)[-1], value[..., -1, :].shape))
+        return last and in_domain(value[..., :-1, :-1], "rotation")
+    if domain == "unit dual quaternion":
+        across = np.allclose(np.sum(value[..., :4] * value[..., 4:], axis=-1), 0.0, atol=1e-14)
+        return across and in_domain(value[..., :4], "unit quaternion")
+    if domain == "unit dual complex number":
+        return in_domain(value[..., :2], "unit vector")
     if domain.startswith("unit "):
         return np.allclose(np.linalg.norm(value, axis=-1), 1.0, atol=1e-14)
     if domain == "skew":
