@@ -199,7 +199,7 @@ def _tests(tree: ast.Module, file: str, found: Found) -> None:
             place = Place(node.name, file, node.lineno)
             for mark in (call for item in node.decorator_list for call in ast.walk(item)):
                 kind = _mark(mark)
-                for number in kind and _strings(mark) or ():
+                for number in (kind and _strings(mark)) or ():
                     (found.tests if kind == "equation" else found.errata).setdefault(number, []).append(place)
 
 
