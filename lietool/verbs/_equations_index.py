@@ -66,6 +66,7 @@ class Found:
     tests: dict[str, list[Place]] = field(default_factory=dict)
     plates: dict[str, list[Place]] = field(default_factory=dict)
     errata: dict[str, list[Place]] = field(default_factory=dict)
+    later: dict[str, list[Place]] = field(default_factory=dict)
     aliases: dict[str, str] = field(default_factory=dict)
 
 
@@ -110,10 +111,10 @@ def scan(package: Path, figures: Path, tests: Path) -> Found:
         _read(package / part, package.parent, _functions, found)
     _read(figures, figures.parent, _plates, found)
     _read(tests, tests.parent, _tests, found)
-    for number, places in found.functions.items():
-        named = [replace(place, name=found.aliases.get(place.name, place.name)) for place in places]
-        # What only serves others comes last.
-        found.functions[number] = sorted(named, key=lambda place: place.name.startswith("series."))
+    for number, places in found.later.items():
+        found.functions.setdefault(number, []).extend(places)
+    for places in found.functions.values():
+        places[:] = [replace(place, name=found.aliases.get(place.name, place.name)) for place in places]
     return found
 
 
@@ -167,10 +168,12 @@ def dumps(equations: list[Equation]) -> str:
 
 def loads(text: str) -> list[Equation]:
     """Return the equations of `dumps`."""
-    return [
-        Equation(**{k: tuple(Place(**p) for p in v) if k in KINDS else v for k, v in row.items()})
-        for row in json.loads(text)
-    ]
+    return [_loaded(row) for row in json.loads(text)]
+
+
+def _loaded(row: dict[str, Any]) -> Equation:
+    places = {kind: tuple(Place(**place) for place in row.pop(kind)) for kind in KINDS}
+    return replace(Equation(**row), **places)
 
 
 def _functions(tree: ast.Module, file: str, found: Found) -> None:
@@ -183,14 +186,19 @@ def _functions(tree: ast.Module, file: str, found: Found) -> None:
                     found.aliases[name] = f"{Path(file).stem}.{alias.name}"
         if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
             place = Place(f"{Path(file).stem}.{node.name}", file, node.lineno)
-            for number in dict.fromkeys(_cited(ast.get_docstring(node) or "")):
-                found.functions.setdefault(number, []).append(place)
+            for number, plain in dict(_cited(ast.get_docstring(node) or "")).items():
+                # Coefficients, and what has a remark such as "with dual numbers", stand behind the others.
+                first = plain and Path(file).stem != "series"
+                (found.functions if first else found.later).setdefault(number, []).append(place)
 
 
-def _cited(docstring: str) -> Iterator[str]:
+def _cited(docstring: str) -> Iterator[tuple[str, bool]]:
+    """The numbers in a docstring, and whether each stands there without a remark."""
     for match in _CITES.finditer(docstring):
         if _NOT_IMPLEMENTED not in match[2]:
-            yield from numbers(match[2], _LETTERS[match[1]])
+            for part in match[2].split(","):
+                plain = not re.search(r"[a-z]", part.replace("Algorithm", "").replace(" to ", ""))
+                yield from ((number, plain) for number in numbers(part, _LETTERS[match[1]]))
 
 
 def _tests(tree: ast.Module, file: str, found: Found) -> None:

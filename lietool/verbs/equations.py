@@ -32,9 +32,9 @@ _STATES = {
 def command(which: tuple[str, ...], as_json: bool) -> None:
     """List the numbered equations: what each says, where it is computed, which test proves it.
 
-    NUMBER is one of the book's (7.8, B7.8), of Kaji and Ochiai's paper (K 6, "K Algorithm 1") or of the MEIS
-    paper (M4), in any case, and shows all about it with a computed example. A chapter (7, A) or a text (B, K, M)
-    lists its own. Functions come from docstrings, tests from their markers, plates from the figures' declarations.
+    NUMBER is one of the book's (7.8, B7.8), of Kaji and Ochiai's paper (K 6, "K Algorithm 1") or of the
+    MEIS paper (M4), in any case, and shows all about it with a computed example. A chapter (7, A) or a text
+    (B, K, M) lists its own. Functions are found by docstrings, tests by markers, plates by their figures.
     """
     every = index()
     chosen = select(" ".join(which), every)
