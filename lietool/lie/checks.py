@@ -73,16 +73,39 @@ def rotation(where: str, name: str, R: ArrayLike, n: int, check: bool = True) ->
     if np.max(defect) <= 0.125 * TOLERANCE:
         return a
     array(where, name, a, (n, n))
-    gram = np.max(np.abs(np.swapaxes(a, -1, -2) @ a - np.eye(n)), axis=(-1, -2))
+    _orthogonal(where, name, a, "a rotation")
+    return a
+
+
+def rigid(where: str, name: str, T: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:
+    """Return T as a float64 array of homogeneous matrices: a rotation, a translation, the row 0 ... 0 1."""
+    a = array(where, name, T, (n + 1, n + 1), check)
+    if not check or not a.size:
+        return a
+    defect = blocks.run(kernels.space_rigid_defect if n == 3 else kernels.plane_rigid_defect, (), (a, 2))
+    if np.max(defect) <= 0.125 * TOLERANCE:
+        return a
+    bottom = np.max(np.abs(a[..., n, :] - np.eye(n + 1)[n]), axis=-1)
+    if np.any(bottom > TOLERANCE):
+        index = first(bottom > TOLERANCE)
+        row = " ".join(f"{entry:.3g}" for entry in a[index][n])
+        fail(where, name, f"a rigid transformation, last row {'0 ' * n}1", f"last row {row}", index)
+    _orthogonal(where, name, a[..., :n, :n], "a rigid transformation")
+    return a
+
+
+def _orthogonal(where: str, name: str, R: NDArray[np.float64], what: str) -> None:
+    """Refuse what is not a rotation, or not one as a part of something else."""
+    n = R.shape[-1]
+    gram = np.max(np.abs(np.swapaxes(R, -1, -2) @ R - np.eye(n)), axis=(-1, -2))
     if np.any(gram > TOLERANCE):
         index = first(gram > TOLERANCE)
         remedy = "Project it onto the rotations first."
-        fail(where, name, f"a rotation, |R^T R - I| <= {TOLERANCE:.0e}", f"{gram[index]:.1e}", index, remedy)
-    flipped = np.linalg.det(a) < 0
+        fail(where, name, f"{what}, |R^T R - I| <= {TOLERANCE:.0e}", f"{gram[index]:.1e}", index, remedy)
+    flipped = np.linalg.det(R) < 0
     if np.any(flipped):
         remedy = "A reflection has no logarithm here; flip one axis."
-        fail(where, name, "a rotation, det > 0", "det = -1", first(flipped), remedy)
-    return a
+        fail(where, name, f"{what}, det > 0", "det = -1", first(flipped), remedy)
 
 
 def unit(where: str, name: str, x: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:
