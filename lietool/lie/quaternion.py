@@ -4,6 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lietool.lie import blocks, checks, kernels
+from lietool.lie.quaternion_complex import from_complex_matrix as from_complex_matrix
+from lietool.lie.quaternion_complex import to_complex_matrix as to_complex_matrix
 from lietool.lie.slerp import nlerp as nlerp
 from lietool.lie.slerp import slerp as slerp
 
