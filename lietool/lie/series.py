@@ -28,9 +28,9 @@ _DEFECT = [(-1.0) ** k / factorial(2 * k + 3) for k in range(12)]
 _LEVER_SWITCH = 1.0
 _LEVER = [(-1.0) ** k * (2 * k + 2) / factorial(2 * k + 3) for k in range(10)]
 
-# The slope of (t - sin t) / t^3; beyond the switch its subtraction keeps all but three bits.
-_DEFECT_SLOPE_SWITCH = 2.4
-_DEFECT_SLOPE = [(-1.0) ** (k + 1) * (2 * k + 2) / factorial(2 * k + 5) for k in range(14)]
+# The slope of (t - sin t) / t^3; beyond the switch its subtraction keeps all but two bits.
+_DEFECT_SLOPE_SWITCH = 4.0
+_DEFECT_SLOPE = [(-1.0) ** (k + 1) * (2 * k + 2) / factorial(2 * k + 5) for k in range(20)]
 
 # ((t/4) sin t + t^2/4 - 1 + cos t) / t^6, an entire function; beyond the switch two bits are lost.
 _COTANGENT_SLOPE_SWITCH = 3.5

@@ -42,19 +42,19 @@ CASES = {
         lambda t: (t * mpmath.sin(t) - 4 * mpmath.sin(t / 2) ** 2) / t**4,
         [F((-1) ** (k + 1) * (2 * k + 2), factorial(2 * k + 4)) for k in range(12)],
         2.0,
-        5,
+        4,
     ),
     "sine_defect_slope": (
         lambda t: (1 - mpmath.cos(t)) / t**4 - 3 * (t - mpmath.sin(t)) / t**5,
         [F((-1) ** (k + 1) * (2 * k + 2), factorial(2 * k + 5)) for k in range(12)],
-        2.4,
-        12,
+        4.0,
+        6,
     ),
     "cotangent_defect_slope": (
         lambda t: (t * mpmath.sin(t) / 4 + t * t / 4 - 1 + mpmath.cos(t)) / (t**2 * mpmath.sin(t / 2)) ** 2,
         [F(1, 360), F(1, 7560), F(1, 201600), F(1, 5987520), F(691, 130767436800)],
         3.5,
-        8,
+        4,
     ),
 }
 
