@@ -1,4 +1,4 @@
-"""What a wheel gets besides the files: the index of numbered equations, for an installed package has no tests."""
+"""What a wheel gets besides the files: the index of numbered equations, for it has no tests to read."""
 
 import importlib.util
 import sys

@@ -15,6 +15,21 @@ from typing import Any
 TEXTS = {"B": "Book", "M": "MEIS", "K": "Kaji-Ochiai"}
 # The parts of the package that compute.
 _MATHEMATICS = ("lie", "mesh", "interp", "deform")
+# Of several functions the plainest comes first; those of modules not named here come after these, before the last.
+_FIRST = (
+    "so2",
+    "so3",
+    "quaternion",
+    "euler",
+    "se2",
+    "se3",
+    "sym",
+    "polar",
+    "affine",
+    "blend",
+    "dual_complex",
+)
+_LAST = ("groups", "series")
 _CITES = re.compile(rf"^({'|'.join(TEXTS.values())}): (.+(?:\n\(.+)*)", re.MULTILINE)
 KINDS = ("functions", "tests", "plates", "errata")
 _LETTERS = {name: letter for letter, name in TEXTS.items()}
@@ -23,7 +38,7 @@ _NUMBER = re.compile(r"\((A\.\d+|\d+(?:\.\d+)?)\)|(Algorithm \d+)")
 _NOT_IMPLEMENTED = "for comparison"
 _WORDS = {
     "_functions": [f"{name}: ".encode() for name in TEXTS.values()],
-    "_plates": [b"equations"],
+    "_plates": [b"Plate("],
     "_tests": [b"mark.equation", b"mark.erratum"],
 }
 
@@ -111,10 +126,10 @@ def scan(package: Path, figures: Path, tests: Path) -> Found:
         _read(package / part, package.parent, _functions, found)
     _read(figures, figures.parent, _plates, found)
     _read(tests, tests.parent, _tests, found)
-    for number, places in found.later.items():
-        found.functions.setdefault(number, []).extend(places)
-    for places in found.functions.values():
-        places[:] = [replace(place, name=found.aliases.get(place.name, place.name)) for place in places]
+    for number in found.functions.keys() | found.later.keys():
+        plain, remarked = found.functions.get(number, ()), found.later.get(number, ())
+        named = [replace(place, name=found.aliases.get(place.name, place.name)) for place in plain]
+        found.functions[number] = sorted(named, key=_rank) + list(remarked)
     return found
 
 
@@ -124,6 +139,12 @@ def _read(folder: Path, root: Path, read: Callable[[ast.Module, str, Found], Non
         # Most files cite nothing, and parsing is what takes the time.
         if any(word in data for word in _WORDS[read.__name__]):
             read(ast.parse(data, str(file)), file.relative_to(root).as_posix(), found)
+
+
+def _rank(place: Place) -> int:
+    module = place.name.partition(".")[0]
+    order = (*_FIRST, "", *_LAST)
+    return order.index(module) if module in order else len(_FIRST)
 
 
 def join(equations: list[Equation], found: Found) -> list[Equation]:
@@ -187,9 +208,8 @@ def _functions(tree: ast.Module, file: str, found: Found) -> None:
         if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
             place = Place(f"{Path(file).stem}.{node.name}", file, node.lineno)
             for number, plain in dict(_cited(ast.get_docstring(node) or "")).items():
-                # Coefficients, and what has a remark such as "with dual numbers", stand behind the others.
-                first = plain and Path(file).stem != "series"
-                (found.functions if first else found.later).setdefault(number, []).append(place)
+                # What has a remark such as "with dual numbers" stands behind the others.
+                (found.functions if plain else found.later).setdefault(number, []).append(place)
 
 
 def _cited(docstring: str) -> Iterator[tuple[str, bool]]:
