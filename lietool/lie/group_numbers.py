@@ -1,0 +1,105 @@
+"""The groups of numbers of `groups`: complex and quaternion, dual and not; nothing here checks its input."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lietool.lie import quaternion
+from lietool.lie.group_matrices import Array, Elements, same
+
+
+def _complex(a: Array) -> NDArray[np.complex128]:
+    return a[..., 0::2] + 1j * a[..., 1::2]
+
+
+def _real(z: NDArray[np.complex128]) -> Array:
+    return np.stack([z.real, z.imag], axis=-1).reshape(*z.shape[:-1], -1)
+
+
+def _complex_product(a: Array, b: Array) -> Array:
+    return _real(_complex(a) * _complex(b))
+
+
+def _dual_complex_product(a: Array, b: Array) -> Array:
+    """(2.38): the unit epsilon anticommutes with i."""
+    p, q = _complex(a), _complex(b)
+    p0, p1, q0, q1 = p[..., 0], p[..., 1], q[..., 0], q[..., 1]
+    return _real(np.stack([p0 * q0, p1 * np.conj(q0) + p0 * q1], axis=-1))
+
+
+def _dual_quaternion_product(a: Array, b: Array) -> Array:
+    z, w, u, v = a[..., :4], a[..., 4:], b[..., :4], b[..., 4:]
+    dual = quaternion.multiply(z, v) + quaternion.multiply(w, u)
+    return np.concatenate([quaternion.multiply(z, u), dual], axis=-1)
+
+
+def _dual_quaternion_inverse(a: Array) -> Array:
+    z = quaternion.inverse(a[..., :4], check=False)
+    return np.concatenate([z, -quaternion.multiply(quaternion.multiply(z, a[..., 4:]), z)], axis=-1)
+
+
+def _unit_dual(a: Array) -> Array:
+    """Divide by |z|, and take from w what is along z."""
+    size = np.linalg.norm(a[..., :4], axis=-1, keepdims=True)
+    z, w = a[..., :4] / size, a[..., 4:] / size
+    return np.concatenate([z, w - np.sum(z * w, axis=-1, keepdims=True) * z], axis=-1)
+
+
+def _unit_dual_defect(a: Array) -> Array:
+    z, w = a[..., :4], a[..., 4:]
+    return np.maximum(np.abs(np.linalg.norm(z, axis=-1) - 1.0), np.abs(np.sum(z * w, axis=-1)))
+
+
+def _numbers(
+    unit: int,
+    multiply: Callable[[Array, Array], Array],
+    inverse: Callable[[Array], Array],
+    project: Callable[[Array], Array] | None = None,
+    defect: Callable[[Array], Array] | None = None,
+) -> Elements:
+    """Return numbers whose first `unit` components must not vanish; without `defect` that is all."""
+
+    def inside(a: Array) -> NDArray[np.bool_]:
+        return np.max(np.abs(a[..., :unit]), axis=-1) > 0
+
+    change = project or same
+    return Elements(defect or (lambda a: np.zeros(a.shape[:-1])), inside, change, change, multiply, inverse)
+
+
+def _unit_defect(unit: int) -> Callable[[Array], Array]:
+    return lambda a: np.abs(np.linalg.norm(a[..., :unit], axis=-1) - 1.0)
+
+
+def _normalized(unit: int) -> Callable[[Array], Array]:
+    return lambda a: a / np.linalg.norm(a[..., :unit], axis=-1, keepdims=True)
+
+
+_C = (2, _complex_product, lambda a: _real(1.0 / _complex(a)))
+_H = (4, quaternion.multiply, lambda a: quaternion.inverse(a, check=False))
+_D = (4, _dual_quaternion_product, _dual_quaternion_inverse)
+_DUAL_C = (2, _dual_complex_product, lambda a: a * np.array([1.0, -1.0, -1.0, -1.0]))
+
+NUMBERS = {
+    "C^x": _numbers(*_C),
+    "S^1": _numbers(*_C, _normalized(2), _unit_defect(2)),
+    "H^x": _numbers(*_H),
+    "S^3": _numbers(*_H, _normalized(4), _unit_defect(4)),
+    "DCN": _numbers(*_DUAL_C, _normalized(2), _unit_defect(2)),
+    "DQ": _numbers(*_D, _unit_dual, _unit_dual_defect),
+    "DQ^x": _numbers(*_D),
+}
+
+
+def _real_part(a: Array) -> Array:
+    h = a.copy()
+    h[..., a.shape[-1] // 2 :] = 0.0
+    return h
+
+
+ACTING = {
+    **dict.fromkeys(("DCN", "DQ", "DQ^x"), _real_part),
+    "C^x": _normalized(2),
+    "H^x": _normalized(4),
+}
+"""The factor h of A = h k, by the name of the group."""
