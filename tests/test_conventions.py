@@ -17,6 +17,7 @@ import lietool.lie
 SUPPORT = ("blocks", "checks", "kernels")
 # Parts of modules that would be too long: they are reached, and named in messages, as those modules.
 REACHED_AS = {
+    "affine_classes": "affine",
     "axis_angle": "so3",
     "dual_blend": "dual_quaternion",
     "dual_complex_blend": "dual_complex",
@@ -29,7 +30,8 @@ MODULES = sorted(
 )
 ENTRY = re.compile(r"^(?P<name>\w+) : (?P<kind>\([^)]*\)|\{\w+\}|bool)(?:, (?P<words>.+))?$")
 BATCH = (2, 5)
-COUNT = 3  # what k stands for in a shape
+ANY_LENGTH = ("(..., n)", "(..., m)")
+SIZES = {"k": 3, "n": 3, "m": 4}  # what a letter stands for in a shape
 
 
 def public(module) -> list[FunctionType]:
@@ -63,7 +65,7 @@ def entries(f: Callable, title: str) -> list[tuple[str, str, str]]:
 def core(kind: str) -> tuple[int, ...]:
     dimensions = kind.strip("()").replace(" ", "").split(",")
     assert dimensions[0] == "...", f"{kind} must start with ..."
-    return tuple(COUNT if d == "k" else int(d) for d in dimensions[1:] if d)
+    return tuple(SIZES[d] if d in SIZES else int(d) for d in dimensions[1:] if d)
 
 
 def sample(rng: np.random.Generator, kind: str, words: str) -> np.ndarray:
@@ -92,6 +94,22 @@ def sample(rng: np.random.Generator, kind: str, words: str) -> np.ndarray:
         return x / np.linalg.norm(x, axis=-1, keepdims=True)
     if domain == "skew":
         return x - np.swapaxes(x, -1, -2)
+    if domain == "basis":  # of so(3)
+        return sample(rng, "(..., 3, 3, 3)", "skew")
+    if domain == "exponential":
+        return np.eye(x.shape[-1]) + 0.5 * x / np.linalg.norm(x, axis=(-1, -2), keepdims=True)
+    if domain in ("affine", "affine multiple"):
+        x[..., -1, :-1] = 0.0
+        if domain == "affine":
+            x[..., -1, -1] = 1.0
+        return x
+    if domain in ("GL+", "Aff+"):
+        if domain == "Aff+":
+            x[..., -1, :] = np.eye(x.shape[-1])[-1]
+        x[..., 0] *= np.sign(np.linalg.det(x))[..., None]
+        return x
+    if domain in ("symmetric", "SPD"):
+        return x + np.swapaxes(x, -1, -2) if domain == "symmetric" else x @ np.swapaxes(x, -1, -2)
     if domain == "positive":
         return np.abs(x) + 0.1
     assert domain in ("", "radians", "non-zero"), f"unknown domain {domain!r}"
@@ -116,6 +134,15 @@ def in_domain(value: np.ndarray, words: str) -> bool:
         return np.allclose(np.linalg.norm(value, axis=-1), 1.0, atol=1e-14)
     if domain == "skew":
         return np.array_equal(value, -np.swapaxes(value, -1, -2))
+    if domain in ("symmetric", "SPD"):
+        definite = domain == "symmetric" or bool(np.all(np.linalg.eigvalsh(value) > 0.0))
+        return definite and np.array_equal(value, np.swapaxes(value, -1, -2))
+    if domain in ("GL+", "Aff+"):
+        last = value[..., -1, :]
+        affine = domain == "GL+" or np.array_equal(last, np.broadcast_to(np.eye(n)[-1], last.shape))
+        return affine and bool(np.all(np.linalg.det(value) > 0.0))
+    if domain == "name":
+        return bool(np.all(value != ""))
     return bool(np.all(np.isfinite(value)))
 
 
@@ -164,6 +191,9 @@ def test_batch_has_the_claimed_shape_and_equals_single_calls(f):
         for index in np.ndindex(BATCH):
             single = outputs(f(*(a[index] if isinstance(a, np.ndarray) else a for a in args)))
             for one, many in zip(single, batch, strict=True):
+                if many.dtype.kind == "U":
+                    assert one == many[index]
+                    continue
                 np.testing.assert_allclose(one, many[index], rtol=4e-16, atol=4e-16)
 
 
@@ -223,7 +253,7 @@ def test_wrong_shape_is_refused(f):
     for i, (_, kind, _) in enumerate(e for e in entries(f, "Parameters") if e[1] != "bool"):
         if isinstance(args[i], np.ndarray) and core(kind):
             broken = list(args)
-            broken[i] = args[i][..., :-1]
+            broken[i] = args[i][..., :-1] if kind not in ANY_LENGTH or len(args) > 1 else np.array(1.0)
             with pytest.raises(ValueError, match=rf": {names[i]} must be .* shape .*; got shape"):
                 f(*broken)
             broken[i] = "abc"
