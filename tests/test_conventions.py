@@ -25,8 +25,12 @@ REACHED_AS = {
     "screw": "dual_quaternion",
     "slerp": "quaternion",
 }
+# What an element is depends on the group that is asked for: tests/lie/test_group_records.py tries them all.
+GROUPS = ("groups", "group_maps", "group_matrices", "group_numbers", "group_records")
 MODULES = sorted(
-    m.name for m in pkgutil.iter_modules(lietool.lie.__path__) if m.name.rsplit("_")[-1] not in SUPPORT
+    name
+    for name in (m.name for m in pkgutil.iter_modules(lietool.lie.__path__))
+    if name.rsplit("_")[-1] not in SUPPORT and name not in GROUPS
 )
 ENTRY = re.compile(r"^(?P<name>\w+) : (?P<kind>\([^)]*\)|\{\w+\}|bool)(?:, (?P<words>.+))?$")
 BATCH = (2, 5)
@@ -98,6 +102,10 @@ def sample(rng: np.random.Generator, kind: str, words: str) -> np.ndarray:
         return sample(rng, "(..., 3, 3, 3)", "skew")
     if domain == "exponential":
         return np.eye(x.shape[-1]) + 0.5 * x / np.linalg.norm(x, axis=(-1, -2), keepdims=True)
+    if domain in ("affine exponential", "infinitesimal affine"):
+        x = sample(rng, kind, "exponential")
+        x[..., -1, :] = np.eye(x.shape[-1])[-1]
+        return x - np.eye(x.shape[-1]) if domain == "infinitesimal affine" else x
     if domain in ("affine", "affine multiple"):
         x[..., -1, :-1] = 0.0
         if domain == "affine":
