@@ -5,7 +5,7 @@
 
 import numpy as np
 
-from lietool.lie import kernels, series
+from lietool.lie import checks, kernels, series
 from lietool.lie.blocks import Rows
 
 
@@ -53,14 +53,19 @@ def log(q: Rows) -> Rows:
     s = np.sqrt(_dot(v, v))
     n = np.hypot(s, q[0])
     c = q[0] / n
-    opposite = (s == 0.0) & (c < 0.0)
+    # Below this the squares in s have lost digits, and no axis but that of w makes itself felt.
+    none = s * checks.LARGEST <= 1.0
+    opposite = none & (c < 0.0)
     # atan2(s, c) / s for the unnormalised pair: it carries v to a, whatever the length of z.
     f = series.angle_over_sine(s, np.where(opposite, 1.0, q[0]))
-    u = [y / np.where(s > 0.0, s, 1.0) for y in v]
+    u = [np.where(none, 0.0, y / np.where(none, 1.0, s)) for y in v]
     along = _dot(u, w) / n
-    slide = c * along - s / n * q[4] / n - f * n * along
+    slide = c * along - s / n * q[4] / n
+    across = [y / n - along * e for y, e in zip(w, u, strict=True)]
+    # Once more, for f is large near pi and what is left along u would grow with it.
+    rest = _dot(u, across)
     a = [f * y for y in v]
-    b = [f * y + slide * e for y, e in zip(w, u, strict=True)]
+    b = [f * n * (y - rest * e) + slide * e for y, e in zip(across, u, strict=True)]
     if np.any(opposite):
         # exp(pi u + d u eps) = -1 - d u eps: the axis is that of the translation, if there is one.
         size = np.sqrt(_dot(w, w))

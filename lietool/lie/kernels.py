@@ -77,7 +77,7 @@ def left_jacobian_inverse(x: Array) -> Rows:
     return _second_order(x, -0.5, series.cotangent_defect(theta))
 
 
-def shepperd(R: Array) -> Rows:
+def shepperd(R: Rows | Array) -> Rows:
     """Return a positive multiple of the quaternion of R, with w >= 0.
 
     The ten products 4 q_i q_j are linear in R.  They form a symmetric matrix
@@ -206,14 +206,14 @@ def plane_log(T: Array) -> Rows:
     return 2.0 * h, a * T[2] + h * T[5], a * T[5] - h * T[2]
 
 
-def quaternion(R: Array) -> Rows:
+def quaternion(R: Rows | Array) -> Rows:
     """Return the unit quaternion of R, with w >= 0."""
     w, x, y, z = shepperd(R)
     f = 1.0 / np.sqrt(w * w + x * x + y * y + z * z)
     return f * w, f * x, f * y, f * z
 
 
-def product(q: Array, p: Array) -> Rows:
+def product(q: Rows | Array, p: Rows | Array) -> Rows:
     """Return Hamilton's product q p."""
     a, b, c, d = q
     w, x, y, z = p
@@ -233,7 +233,7 @@ def quaternion_exp(x: Array) -> Rows:
     return np.cos(theta), a * x, a * y, a * z
 
 
-def quaternion_log(q: Array) -> Rows:
+def quaternion_log(q: Rows | Array) -> Rows:
     """Return the principal logarithm of a unit quaternion; (pi, 0, 0) at -1, where every axis serves."""
     w, x, y, z = q
     s = np.sqrt(x * x + y * y + z * z)
