@@ -62,6 +62,23 @@ def array(
     return a
 
 
+def square(where: str, name: str, x: ArrayLike, check: bool = True, leading: int = 0) -> NDArray[np.float64]:
+    """Return x as a float64 array of square matrices, or of lists of them where `leading` is 1."""
+    a = array(where, name, x, (), check=False)
+    if a.ndim < 2 + leading or a.shape[-1] != a.shape[-2]:
+        wanted = "(..., k, n, n)" if leading else "(..., n, n)"
+        fail(where, name, f"an array of shape {wanted}", f"shape {a.shape}", None)
+    return array(where, name, a, a.shape[a.ndim - 2 - leading :], check)
+
+
+def vector(where: str, name: str, x: ArrayLike, check: bool = True) -> NDArray[np.float64]:
+    """Return x as a float64 array of vectors of any length but 0."""
+    a = array(where, name, x, (), check=False)
+    if a.ndim < 1 or not a.shape[-1]:
+        fail(where, name, "an array of shape (..., n)", f"shape {a.shape}", None)
+    return array(where, name, a, a.shape[-1:], check)
+
+
 def rotation(where: str, name: str, R: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:
     """Return R as a float64 array of rotations: no entry of |R^T R - I| above TOLERANCE, det R > 0."""
     a = array(where, name, R, (n, n), check=False)

@@ -57,7 +57,8 @@ def vee(X: ArrayLike) -> Array:
 def exp(x: ArrayLike, *, check: bool = True) -> Array:
     """Return the screw motion of a twist: R = exp(hat(x)), d = V l with the left Jacobian V of SO(3).
 
-    Book: (4.5), (7.3), (7.4), (7.5), (A.9), (A.10)
+    Book: (2.43), (4.5), (7.3), (7.4), (7.5), (A.9), (A.10)
+    MEIS: section 2, corrected: d is printed with R in the place of X
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ def log(T: ArrayLike, *, check: bool = True) -> Array:
     At a half turn the rotation is that of `so3.log`, one of two.
 
     Book: (7.6), (7.7), (7.8), (A.11)
-    MEIS: section 2, where the formula for l means X and prints R, and the trace is that of the 3 x 3 part
+    MEIS: section 2, corrected: the trace is that of the 3 x 3 part
 
     Parameters
     ----------
@@ -120,7 +121,7 @@ def log_near(T: ArrayLike, reference: ArrayLike, *, check: bool = True) -> tuple
     free and taken from the reference.
 
     Book: (4.27), (4.28), (4.30)
-    Kaji-Ochiai: Algorithm 1, corrected as in `so3.log_near`, with its translation
+    Kaji-Ochiai: Algorithm 1, corrected as in `so3.log_near`, with the translation
 
     Parameters
     ----------
