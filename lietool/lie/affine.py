@@ -23,12 +23,11 @@ from lietool.lie.affine_classes import project as project
 _NOTHING = 1e-9
 """Radians, lengths or logarithms of stretch: what `classify` takes for 0."""
 
-_REMEDY = "It turns space inside out or flattens it, and no stretch and rotation do; leave it out or mend it."
-
 
 def _phi(where: str, space, plane, params: ArrayLike, check: bool) -> NDArray[np.float64]:
     p, n = matrix_checks.parameters(where, "params", params, check)
-    A = blocks.run(space if n == 3 else plane, (n + 1, n + 1), (p, 1))
+    with np.errstate(over="ignore", invalid="ignore"):
+        A = blocks.run(space if n == 3 else plane, (n + 1, n + 1), (p, 1))
     if check and A.size and not np.max(A) < np.inf:
         index = checks.first(~np.all(np.isfinite(A), axis=(-1, -2)))
         checks.fail(where, "params", "with eigenvalues of the symmetric part below 709", "an overflow", index)
@@ -48,8 +47,7 @@ def _oriented(where: str, A: NDArray[np.float64], p: NDArray[np.float64]) -> Non
     """Refuse A where the symmetric part came out as nan: the determinant is not positive."""
     if p.size and np.isnan(np.min(p[..., -1])):
         index = checks.first(np.isnan(p[..., -1]))
-        got = f"det = {np.linalg.det(A[index]):.3g}"
-        checks.fail(where, "A", "a matrix with det > 0", got, index, _REMEDY)
+        matrix_checks.inside_out(where, A[index], index)
 
 
 def phi_so(params: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:

@@ -48,16 +48,15 @@ def phi_se(p: Array) -> Rows:
 def psi_parts(A: Array) -> Rows:
     """Return the rotation R (9) and the upper triangle of Y = log S (6), nan where det A <= 0.
 
-    The mean of log d is added last: V diag V^T then rounds numbers that are
-    no larger than the spread, however large or small A is.
+    The largest of log d is added last: see `sym_kernels.relative_log`.
     """
     M, k = jacobi.scaled((*A[0:3], *A[4:7], *A[8:11]))
     U, d, V = jacobi.svd_space(M)
-    logs, mean = sym_kernels.centred_log(d)
-    mean = mean + k * _LN2
+    logs, m = sym_kernels.relative_log(d)
+    m = m + k * _LN2
     Y = jacobi.conjugate_space(V, logs)
     R = jacobi.product(U, jacobi.transpose(V, 3), 3)
-    return *R, Y[0] + mean, Y[1], Y[2], Y[3] + mean, Y[4], Y[5] + mean
+    return *R, Y[0] + m, Y[1], Y[2], Y[3] + m, Y[4], Y[5] + m
 
 
 def psi_so(A: Array) -> Rows:
@@ -90,12 +89,12 @@ def psi_so_plane(A: Array) -> Rows:
     """Return x, l, Y with phi_so_plane(x, l, Y) = A."""
     M, k = jacobi.scaled((A[0], A[1], A[3], A[4]))
     U, d, V = jacobi.svd_plane(M)
-    logs, mean = sym_kernels.centred_log(d)
-    mean = mean + k * _LN2
+    logs, m = sym_kernels.relative_log(d)
+    m = m + k * _LN2
     xx, xy, yy = jacobi.conjugate_plane(V, logs)
     # Adding 0.0 turns -0.0 into 0.0, so that the half turn is pi and never -pi.
     x = np.arctan2(U[2] * V[0] - U[0] * V[2] + 0.0, U[0] * V[0] + U[2] * V[2])
-    return x, A[2], A[5], xx + mean, xy, yy + mean
+    return x, A[2], A[5], xx + m, xy, yy + m
 
 
 def psi_se_plane(A: Array) -> Rows:

@@ -79,6 +79,45 @@ def eigen(Y: Rows) -> tuple[Rows, Rows]:
     return (rows[0], rows[3], rows[5]), _rotation(rows[6:])
 
 
+def _halves(a: Array) -> tuple[Array, Array]:
+    """Split numbers into two of half as many digits, whose products are exact (Veltkamp)."""
+    big = a * (2.0**27 + 1.0)
+    high = big - (big - a)
+    return high, a - high
+
+
+def _exact_product(a: tuple[Array, ...], b: tuple[Array, ...]) -> tuple[Array, Array]:
+    """Return the product of numbers given with their halves, and its rounding error (Dekker)."""
+    p = a[0] * b[0]
+    return p, ((a[1] * b[1] - p) + a[1] * b[2] + a[2] * b[1]) + a[2] * b[2]
+
+
+def eigen_error(Y: Rows, d: Rows, V: Rows) -> Rows:
+    """Return v . (Y v - d v) for each eigenvalue d and vector v: what rounding has left out of d.
+
+    Many turns round d by a few ulp of the largest entry.  Products and sums
+    are taken with their rounding errors; so this finds what is missing.
+    """
+    entries = [(y, *_halves(y)) for y in full(Y)]
+    errors = []
+    for i in range(3):
+        v = [(x, *_halves(x)) for x in V[i::3]]
+        minus = (-d[i], *_halves(-d[i]))
+        gap = []
+        for j in range(3):
+            pairs = [*zip(entries[3 * j : 3 * j + 3], v, strict=True), (minus, v[j])]
+            total, rest = _exact_product(*pairs[0])
+            for a, b in pairs[1:]:
+                p, e = _exact_product(a, b)
+                new = total + p
+                part = new - total
+                rest = rest + e + ((total - (new - part)) + (p - part))
+                total = new
+            gap.append(total + rest)
+        errors.append(_dot([x[0] for x in v], gap))
+    return errors
+
+
 def _pair(rows: List, i: int, j: int, n: int) -> NDArray[np.bool_]:
     """Turn columns i and j of A, and of V, until they are orthogonal, the longer first."""
     columns = range(0, n * n, n)
@@ -161,7 +200,9 @@ def svd_space(A: Rows) -> tuple[Rows, Rows, Rows]:
     rows = _settle(_unit(list(A), 3), _space_sweep)
     a, b, c = rows[0:9:3], rows[1:9:3], rows[2:9:3]
     u, v, w = _frame(a, b)
-    d = (np.sqrt(_dot(a, a)), _dot(v, b), _dot(w, c))
+    first = np.sqrt(_dot(a, a))
+    second = np.minimum(_dot(v, b), first)  # equal ones may be rounded out of order
+    d = (first, second, np.minimum(_dot(w, c), second))
     return _by_rows(u, v, w), d, _rotation(rows[9:])
 
 
@@ -173,7 +214,7 @@ def svd_plane(A: Rows) -> tuple[Rows, Rows, Rows]:
     x, y = f * rows[0], f * rows[2]
     f = 1.0 / np.hypot(rows[4], rows[6])
     c, s = f * rows[4], f * rows[6]
-    return (x, -y, y, x), (first, x * rows[3] - y * rows[1]), (c, -s, s, c)
+    return (x, -y, y, x), (first, np.minimum(x * rows[3] - y * rows[1], first)), (c, -s, s, c)
 
 
 def conjugate_space(V: Rows, d: Rows) -> Rows:

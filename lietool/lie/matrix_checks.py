@@ -1,5 +1,7 @@
 """What the functions of symmetric, square and affine matrices ask of their arguments, beside `checks`."""
 
+from typing import NoReturn
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -45,14 +47,20 @@ def symmetric(where: str, name: str, S: ArrayLike, check: bool = True) -> NDArra
     return a
 
 
-def orientation(where: str, name: str, A: NDArray[np.float64], smallest: NDArray[np.float64]) -> None:
+def inside_out(where: str, A: NDArray[np.float64], index: tuple[int, ...]) -> NoReturn:
+    """Raise the error for one matrix whose determinant is not positive."""
+    det = float(np.linalg.det(A))
+    got = f"det = {det:.3g}" + (", which is rounding" if det > 0.0 else "")
+    remedy = "It turns space inside out or flattens it; stretches and rotations do not."
+    checks.fail(where, "A", "a matrix with det > 0", got, index, remedy)
+
+
+def orientation(where: str, A: NDArray[np.float64], smallest: NDArray[np.float64]) -> None:
     """Refuse A where its smallest singular value, with the sign of the determinant, is not positive."""
     if smallest.size and not np.min(smallest) > 0.0:
         index = checks.first(~(smallest > 0.0))
         n = smallest.ndim
-        got = f"det = {np.linalg.det(A.reshape(*smallest.shape, *A.shape[n:])[index]):.3g}"
-        remedy = "It turns space inside out or flattens it, so it has no polar decomposition A = R S."
-        checks.fail(where, name, "a matrix with det > 0", got, index, remedy)
+        inside_out(where, A.reshape(*smallest.shape, *A.shape[n:])[index], index)
 
 
 def affine(where: str, name: str, A: ArrayLike, check: bool = True) -> NDArray[np.float64]:

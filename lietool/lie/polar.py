@@ -38,7 +38,7 @@ def _split(where: str, A: NDArray[np.float64], check: bool, left: bool) -> tuple
 
     both = blocks.run(kernel, (2 * n * n + 1,), (A, 2))
     if check:
-        matrix_checks.orientation(where, "A", A, both[..., -1])
+        matrix_checks.orientation(where, A, both[..., -1])
     R, S = both[..., : n * n], both[..., n * n : -1]
     return R.reshape(A.shape).copy(), S.reshape(A.shape).copy()
 
@@ -129,7 +129,7 @@ def svd(
     rows = blocks.run(kernel, (2 * n * n + n,), (A, 2))
     d = rows[..., 2 * n * n :].copy()
     if check:
-        matrix_checks.orientation("polar.svd", "A", A, d[..., -1])
+        matrix_checks.orientation("polar.svd", A, d[..., -1])
     U, V = rows[..., : n * n], rows[..., n * n : 2 * n * n]
     return U.reshape(A.shape).copy(), d, V.reshape(A.shape).copy()
 

@@ -21,7 +21,8 @@ def _apply(name: str, S: NDArray[np.float64], *more: tuple[NDArray[np.float64], 
     def whole(S: Rows, *more: Rows) -> Rows:
         return jacobi.full(kernel(jacobi.upper(S), *more))
 
-    return blocks.run(whole, (n, n), (S, 2), *more)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return blocks.run(whole, (n, n), (S, 2), *more)
 
 
 def _definite(where: str, name: str, S: NDArray[np.float64], result: NDArray[np.float64]) -> None:
@@ -97,7 +98,7 @@ def log(S: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
 def power(S: ArrayLike, t: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
     """Return S^t = exp(t log S), a curve of positive definite matrices from I at 0 to S at 1.
 
-    Book: (3.13), (4.3), (5.2)
+    Book: (3.13), (4.3)
     Kaji-Ochiai: (11)
 
     Parameters

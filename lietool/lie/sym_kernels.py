@@ -3,7 +3,7 @@
 A function f of Y is a polynomial of degree n - 1 in Y that agrees with f at
 the eigenvalues.  Its coefficients are divided differences of f, written so
 that equal eigenvalues are no special case.  `blocks.run` feeds these
-functions; nothing here checks its input.
+functions; nothing here checks its input, and what overflows is infinite or nan.
 """
 
 from collections.abc import Callable
@@ -85,17 +85,16 @@ def exp_space(Y: Rows) -> Rows:
         x, y = np.minimum(x, _WIDEST), np.minimum(y, _WIDEST)
     low = _quotient(np.expm1, -y)
     c = (_quotient(np.expm1, x) - low) / (x + y + _TINY)
-    with np.errstate(over="ignore"):
-        scale = np.exp(middle)
-        E = _polynomial(_shifted(Y, middle), scale * (low + c * y), scale * c)
-        return _repair([E[0] + scale, E[1], E[2], E[3] + scale, E[4], E[5] + scale], Y, wide, exp_jacobi)
+    scale = np.exp(middle)
+    E = _polynomial(_shifted(Y, middle), scale * (low + c * y), scale * c)
+    return _repair([E[0] + scale, E[1], E[2], E[3] + scale, E[4], E[5] + scale], Y, wide, exp_jacobi)
 
 
 def exp_jacobi(Y: Rows) -> Rows:
-    """Return V diag(exp d) V^T."""
-    mean = (Y[0] + Y[3] + Y[5]) * (1.0 / 3.0)
-    d, V = jacobi.eigen(_shifted(Y, mean))
-    return jacobi.conjugate_space(V, [np.exp(x + mean) for x in d])
+    """Return V diag(exp d) V^T, with d to half an ulp: exp makes its error a relative one."""
+    d, V = jacobi.eigen(Y)
+    error = jacobi.eigen_error(Y, d, V)
+    return jacobi.conjugate_space(V, [np.exp(x) * (1.0 + e) for x, e in zip(d, error, strict=True)])
 
 
 def _binary_scale(trace: Array, n: int) -> tuple[Array, Array]:
@@ -130,41 +129,44 @@ def log_space(S: Rows) -> Rows:
     return _repair([L[0] + m, L[1], L[2], L[3] + m, L[4], L[5] + m], S, bad, log_jacobi)
 
 
-def centred_log(d: Rows) -> tuple[Rows, Array]:
-    """Return the logarithms of d less their mean, and the mean."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        logs = [np.log(np.where(x > 0.0, x, np.nan)) for x in d]
-    mean = sum(logs[1:], logs[0]) * (1.0 / len(logs))
-    return [x - mean for x in logs], mean
+def relative_log(d: Rows) -> tuple[Rows, Array]:
+    """Return the logarithms of d less the largest, and the largest; nan where one of d is not positive.
+
+    V diag V^T of the former rounds least along the longest axis, where an
+    error weighs most in the exponential; the latter is then added to the
+    diagonal, so that the scale of d plays no part.
+    """
+    logs = [np.log(np.where(x > 0.0, x, np.nan)) for x in d]
+    largest = logs[0]
+    for x in logs[1:]:
+        largest = np.maximum(largest, x)
+    return [x - largest for x in logs], largest
 
 
 def log_jacobi(S: Rows) -> Rows:
-    """Return V diag(log d) V^T, the mean of log d added last."""
+    """Return V diag(log d) V^T."""
     S, k = jacobi.scaled(S)
     d, V = jacobi.eigen(S)
-    logs, mean = centred_log(d)
-    mean = mean + k * _LN2
+    logs, m = relative_log(d)
+    m = m + k * _LN2
     L = jacobi.conjugate_space(V, logs)
-    return L[0] + mean, L[1], L[2], L[3] + mean, L[4], L[5] + mean
-
-
-def _powers(logs: Rows, mean: Array, t: Array) -> Rows:
-    """Return d^t, from the logarithms of d less their mean, and that mean."""
-    with np.errstate(over="ignore"):
-        return [np.exp(t * (x + mean)) for x in logs]
+    return L[0] + m, L[1], L[2], L[3] + m, L[4], L[5] + m
 
 
 def power_space(S: Rows, t: Rows) -> Rows:
     """Return V diag(d^t) V^T; nan where S is not positive definite."""
     S, k = jacobi.scaled(S)
     d, V = jacobi.eigen(S)
-    logs, mean = centred_log(d)
-    return jacobi.conjugate_space(V, _powers(logs, mean + k * _LN2, t[0]))
+    powers = [np.where(x > 0.0, x, np.nan) ** t[0] for x in d]
+    scale = np.exp2(t[0] * k)
+    return [scale * x for x in jacobi.conjugate_space(V, powers)]
 
 
 def power_plane(S: Rows, t: Rows) -> Rows:
     """Return S^t by its logarithm; nan where S is not positive definite."""
-    return exp_plane([t[0] * y for y in log_plane(S)])
+    S, k = jacobi.scaled(S)
+    scale = np.exp2(t[0] * k)
+    return [scale * x for x in exp_plane([t[0] * y for y in log_plane(S)])]
 
 
 def exp_plane(Y: Rows) -> Rows:
@@ -172,10 +174,9 @@ def exp_plane(Y: Rows) -> Rows:
     xx, xy, yy = Y
     b = 0.5 * (xx - yy)
     h = np.hypot(b, xy)
-    with np.errstate(over="ignore"):
-        e = np.exp(0.5 * (xx + yy) + h)
-        s = e * _quotient(np.expm1, -2.0 * h)
-        low = e * np.exp(-2.0 * h)
+    e = np.exp(0.5 * (xx + yy) + h)
+    s = e * _quotient(np.expm1, -2.0 * h)
+    low = e * np.exp(-2.0 * h)
     c = low + s * h
     return c + s * b, s * xy, c - s * b
 
