@@ -12,7 +12,7 @@ _ENTRY = re.compile(r"^(?P<name>\w+) : (?P<kind>\([^)]*\)|\{\w+\}|bool)(?:, (?P<
 _MODULE = re.compile(r"\b([a-z_0-9]+)\.[a-z_]+")
 # Numbers without a pattern, so that a wrong entry or a wrong sign cannot hide.
 _PLAIN = (0.3, -0.2, 0.6, 0.5, -0.4, 0.1, 0.7, 0.2, -0.5, 0.4, -0.1, 0.8, 0.6, -0.3, 0.9, -0.7)
-_DIMENSIONS = {"n": 3, "k": 2}
+_DIMENSIONS = {"n": 3, "m": 4, "k": 2}
 
 
 def of_function(name: str) -> list[tuple[str, str]]:
@@ -59,14 +59,12 @@ def of_expressions(expressions: list[str]) -> list[tuple[str, str]]:
     known: dict[str, Any] = {"np": np}
     lines = []
     for text in expressions:
-        name, equals, expression = text.partition(" = ")
-        if not equals or not name.isidentifier():
-            name, expression = "", text
+        names, _, expression = text.rpartition(" = ")
         for module in set(_MODULE.findall(expression)) - known.keys():
             known[module] = importlib.import_module(f"lietool.lie.{module}")
         value = eval(expression, known)
-        if name:
-            known[name] = value
+        kept = names.split(", ") if names else []
+        known |= dict(zip(kept, value if len(kept) > 1 else [value], strict=False))
         lines.append((text, show(value)))
     return lines
 
@@ -75,10 +73,11 @@ def show(value: Any) -> str:
     """Return a result as text, rounded."""
     if isinstance(value, tuple):
         return "\n".join(map(show, value))
-    if isinstance(value, np.ndarray | np.generic | float | complex):
+    value = np.asarray(value)
+    if value.dtype.kind in "fc":
         # Adding 0.0 leaves no -0.
-        return np.array2string(np.round(np.asarray(value), 6) + 0.0, separator=", ", floatmode="maxprec")
-    return str(value)
+        value = np.round(value, 6) + 0.0
+    return np.array2string(value, separator=", ", floatmode="maxprec_equal")
 
 
 def _arguments(function: Callable[..., Any]) -> Iterator[tuple[str, str, str]]:
@@ -118,13 +117,30 @@ def _rigid(x: np.ndarray) -> np.ndarray:
 
 
 def _homogeneous(A: np.ndarray, d: np.ndarray) -> np.ndarray:
-    H = np.eye(len(d) + 1)
-    H[:-1, :-1], H[:-1, -1] = A, d
+    n = d.shape[-1]
+    H = np.zeros((*d.shape[:-1], n + 1, n + 1))
+    H[..., :n, :n], H[..., :n, n], H[..., n, n] = A, d, 1.0
     return H
+
+
+def _affine(x: np.ndarray) -> np.ndarray:
+    n = x.shape[-1] - 1
+    return _homogeneous(x[..., :n, :n] + 2.0 * np.eye(n), x[..., :n, n])
 
 
 def _unit(x: np.ndarray) -> np.ndarray:
     return x / np.linalg.norm(x)
+
+
+def _unit_dual(x: np.ndarray) -> np.ndarray:
+    q = x / np.linalg.norm(x[:4])
+    q[4:] -= (q[:4] @ q[4:]) * q[:4]
+    return q
+
+
+def _complex_form(x: np.ndarray) -> np.ndarray:
+    z, w = x @ [1, 1j]
+    return np.array([[z, -w], [w.conjugate(), z.conjugate()]])
 
 
 _DOMAINS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
@@ -136,9 +152,14 @@ _DOMAINS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "symmetric": lambda x: x + x.T,
     "SPD": lambda x: x @ x.T + np.eye(len(x)),
     "GL+": lambda x: x + 2.0 * np.eye(len(x)),
-    "Aff+": lambda x: _homogeneous(x[:-1, :-1] + 2.0 * np.eye(len(x) - 1), x[:-1, -1]),
+    "Aff+": _affine,
+    "affine": _affine,
+    "affine multiple": lambda x: 2.0 * _affine(x),
     "rotation": _rotation,
     "rigid": _rigid,
     "unit vector": _unit,
     "unit quaternion": _unit,
+    "unit dual quaternion": _unit_dual,
+    "unit dual complex number": lambda x: x / np.linalg.norm(x[:2]),
+    "complex form": _complex_form,
 }

@@ -15,7 +15,7 @@ from typing import Any
 TEXTS = {"B": "Book", "M": "MEIS", "K": "Kaji-Ochiai"}
 # The parts of the package that compute.
 _MATHEMATICS = ("lie", "mesh", "interp", "deform")
-# Of several functions the plainest comes first; those of modules not named here come after these, before the last.
+# Of several functions the plainest comes first; those of other modules stand between these and the last.
 _FIRST = (
     "so2",
     "so3",
@@ -39,6 +39,7 @@ _NOT_IMPLEMENTED = "for comparison"
 _WORDS = {
     "_functions": [f"{name}: ".encode() for name in TEXTS.values()],
     "_plates": [b"Plate("],
+    "_errata": [b"@erratum("],
     "_tests": [b"mark.equation", b"mark.erratum"],
 }
 
@@ -125,6 +126,7 @@ def scan(package: Path, figures: Path, tests: Path) -> Found:
     for part in _MATHEMATICS:
         _read(package / part, package.parent, _functions, found)
     _read(figures, figures.parent, _plates, found)
+    _read(package / "verbs", package.parent, _errata, found)
     _read(tests, tests.parent, _tests, found)
     for number in found.functions.keys() | found.later.keys():
         plain, remarked = found.functions.get(number, ()), found.later.get(number, ())
@@ -235,6 +237,24 @@ def _mark(node: ast.AST) -> str:
     """Return which of our two markers a node of the syntax tree is, if any."""
     name = ast.unparse(node.func) if isinstance(node, ast.Call) else ""
     return name.rpartition(".")[2] if name in ("pytest.mark.equation", "pytest.mark.erratum") else ""
+
+
+def _errata(tree: ast.Module, file: str, found: Found) -> None:
+    """The list of `lietool errata`: each is a function under ``@erratum(list, where, ...)``."""
+    for node in tree.body:
+        for call in getattr(node, "decorator_list", ()):
+            if isinstance(call, ast.Call) and ast.unparse(call.func) == "erratum":
+                where = next((text for argument in call.args for text in _strings(argument)), "")
+                for number in _equations_of(where):
+                    found.errata.setdefault(number, []).append(Place(where, file, call.lineno))
+
+
+def _equations_of(where: str) -> list[str]:
+    """The equations that a place such as ``B 6.1, 6.3`` or ``K (8) near pi`` names; a section is none."""
+    if where.endswith("(text)"):
+        return []
+    number = r"(?:A|\d+)\.\d+(?![\d.])|\(\d+\)|Alg\. 1"
+    return [f"{where[0]} {n.strip('()').replace('Alg.', 'Algorithm')}" for n in re.findall(number, where)]
 
 
 def _plates(tree: ast.Module, file: str, found: Found) -> None:

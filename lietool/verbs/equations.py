@@ -18,6 +18,7 @@ from lietool.verbs._equations_index import Equation, Place
 
 LIST = paths.PACKAGE / "verbs" / "equations.toml"
 BUILT = paths.PACKAGE / "verbs" / "equations.json"
+_HEADS = {"functions": "function", "tests": "test", "plates": "plate", "errata": "erratum"}
 _STATES = {
     "proved": "a function computes it and a test proves it",
     "law": "a test proves it of several functions",
@@ -77,7 +78,7 @@ def select(words: str, every: Sequence[Equation]) -> list[Equation]:
     """
     key = _key(words)
     by_key = {_key(equation.number): equation for equation in every}
-    for known in (key, f"b{key}", f"k{key}"):
+    for known in (key, f"b{key}", f"k{key}" if key.startswith("alg") else key):
         if known in by_key:
             return [by_key[known]]
     start = f"{key}." if key.isdigit() or key == "a" else key
@@ -161,24 +162,25 @@ def _page(about: dict[str, Any]) -> str:
     lines = [f"{about['number']}  {about['says']}", f"  {about['formula']}", ""]
     meaning = _STATES[about["state"]] + (f"; awaits {about['awaited']}" if "awaited" in about else "")
     lines.append(f"  {'state':<10}{about['state']}: {meaning}")
-    for kind, head in (
-        ("functions", "function"),
-        ("tests", "test"),
-        ("plates", "plate"),
-        ("errata", "erratum"),
-    ):
-        for place in about[kind]:
-            lines.append(f"  {head:<10}{place['name']:<36}  {place['at']}")
+    width = max((len(place["name"]) for kind in _HEADS for place in about[kind]), default=0)
+    for kind, head in _HEADS.items():
+        lines += [f"  {head:<10}{place['name']:<{width}}  {place['at']}" for place in about[kind]]
     if about["example"]:
         lines += ["", "  example"]
         for step in about["example"]:
-            one_line = "\n" not in step["output"] and " = " not in step["input"]
-            lines += (
-                [f"    {step['input']} ="] if not one_line else [f"    {step['input']} = {step['output']}"]
-            )
-            if not one_line:
-                lines += [f"      {line}" for line in step["output"].splitlines()]
+            lines += _step(step["input"], step["output"])
     return "\n".join(lines)
+
+
+def _step(given: str, value: str) -> list[str]:
+    """One line of an example: what is computed, and behind or below it what comes out."""
+    if "\n" not in value and " = " not in given:
+        return [f"    {given} = {value}"]
+    if re.fullmatch(r"\w+ = np\.(array\(.*\])\)", given):
+        # A value that is written out says itself.
+        return [f"    {given}"]
+    ends = "" if " = " in given else " ="
+    return [f"    {given}{ends}", *(f"      {line}" for line in value.splitlines())]
 
 
 def _located(place: Place) -> str:
