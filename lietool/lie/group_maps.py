@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lietool.lie import quaternion
+from lietool.lie import dual_complex, dual_quaternion, quaternion
 
 Array = NDArray[np.float64]
 Node = tuple[str, int]
@@ -61,13 +61,6 @@ def _pad(zeros: int) -> Callable[[Array], Array]:
     return lambda a: np.concatenate([a, np.zeros((*a.shape[:-1], zeros))], axis=-1)
 
 
-def _with_j(a: Array) -> Array:
-    """Return p0 + p1 j eps for p0 + p1 eps."""
-    q = np.zeros((*a.shape[:-1], 8))
-    q[..., :2], q[..., 6:] = a[..., :2], a[..., 2:]
-    return q
-
-
 def _turn(a: Array) -> Array:
     """Return the rotation by twice the angle: v -> p^2 v."""
     c, s = a[..., 0] ** 2 - a[..., 1] ** 2, 2.0 * a[..., 0] * a[..., 1]
@@ -77,34 +70,6 @@ def _turn(a: Array) -> Array:
 def _half_turn(R: Array) -> Array:
     theta = 0.5 * np.arctan2(R[..., 1, 0], R[..., 0, 0])
     return np.stack([np.cos(theta), np.sin(theta)], axis=-1)
-
-
-def _move_plane(a: Array) -> Array:
-    """Return v -> p0^2 v + 2 p0 p1."""
-    p0, p1 = a[..., 0] + 1j * a[..., 1], a[..., 2] + 1j * a[..., 3]
-    A = homogeneous(_turn(a[..., :2]))
-    A[..., 0, 2], A[..., 1, 2] = (2.0 * p0 * p1).real, (2.0 * p0 * p1).imag
-    return A
-
-
-def _lift_plane(A: Array) -> Array:
-    p0 = _half_turn(A[..., :2, :2])
-    p1 = 0.5 * (A[..., 0, 2] + 1j * A[..., 1, 2]) * (p0[..., 0] - 1j * p0[..., 1])
-    return np.concatenate([p0, np.stack([p1.real, p1.imag], axis=-1)], axis=-1)
-
-
-def _move_space(a: Array) -> Array:
-    """Return p -> z p z^-1 + 2 w z^-1."""
-    z, w = a[..., :4], a[..., 4:]
-    A = homogeneous(quaternion.to_matrix(z, check=False))
-    A[..., :3, 3] = 2.0 * quaternion.multiply(w, quaternion.conjugate(z))[..., 1:]
-    return A
-
-
-def _lift_space(A: Array) -> Array:
-    z = quaternion.from_matrix(A[..., :3, :3], check=False)
-    t = np.concatenate([np.zeros((*A.shape[:-2], 1)), A[..., :3, 3]], axis=-1)
-    return np.concatenate([z, 0.5 * quaternion.multiply(t, z)], axis=-1)
 
 
 def _inclusions(act: Callable[[Array], Array], pairs: str, n: tuple[int, int] | None = None) -> list[Map]:
@@ -121,14 +86,20 @@ MAPS = (
     *_inclusions(_pad(2), "S^1<S^3 C^x<H^x", (2, 3)),
     *_inclusions(_pad(2), "S^1<DCN"),
     *_inclusions(_pad(4), "S^3<DQ H^x<DQ^x"),
-    *_inclusions(_with_j, "DCN<DQ", (2, 3)),
+    *_inclusions(dual_complex.to_dual_quaternion, "DCN<DQ", (2, 3)),
     Map("S^1", "SO", "covering", _turn, (2, 2), 2, _half_turn),
     Map(
         *("S^3", "SO", "covering", lambda q: quaternion.to_matrix(q, check=False), (3, 3), 2),
         lambda R: quaternion.from_matrix(R, check=False),
     ),
-    Map("DCN", "SE", "covering", _move_plane, (2, 2), 2, _lift_plane),
-    Map("DQ", "SE", "covering", _move_space, (3, 3), 2, _lift_space),
+    Map(
+        *("DCN", "SE", "covering", lambda p: dual_complex.to_matrix(p, check=False), (2, 2), 2),
+        lambda A: dual_complex.from_matrix(A, check=False),
+    ),
+    Map(
+        *("DQ", "SE", "covering", lambda q: dual_quaternion.to_matrix(q, check=False), (3, 3), 2),
+        lambda A: dual_quaternion.from_matrix(A, check=False),
+    ),
 )
 
 

@@ -107,6 +107,7 @@ def _nearest_orthogonal(A: Array) -> Array:
 
 
 def _nearest_rotation(A: Array) -> Array:
+    # `polar.rotation` is for n = 2 and 3, and refuses where several are equally near.
     U, _, Vt = np.linalg.svd(A)
     U[..., :, -1] *= np.sign(np.linalg.det(U) * np.linalg.det(Vt))[..., None]
     return U @ Vt

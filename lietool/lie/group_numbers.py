@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from lietool.lie import quaternion
+from lietool.lie import dual_complex, dual_quaternion, quaternion
 from lietool.lie.group_matrices import Array, Elements, same
 
 
@@ -19,31 +19,6 @@ def _real(z: NDArray[np.complex128]) -> Array:
 
 def _complex_product(a: Array, b: Array) -> Array:
     return _real(_complex(a) * _complex(b))
-
-
-def _dual_complex_product(a: Array, b: Array) -> Array:
-    """(2.38): the unit epsilon anticommutes with i."""
-    p, q = _complex(a), _complex(b)
-    p0, p1, q0, q1 = p[..., 0], p[..., 1], q[..., 0], q[..., 1]
-    return _real(np.stack([p0 * q0, p1 * np.conj(q0) + p0 * q1], axis=-1))
-
-
-def _dual_quaternion_product(a: Array, b: Array) -> Array:
-    z, w, u, v = a[..., :4], a[..., 4:], b[..., :4], b[..., 4:]
-    dual = quaternion.multiply(z, v) + quaternion.multiply(w, u)
-    return np.concatenate([quaternion.multiply(z, u), dual], axis=-1)
-
-
-def _dual_quaternion_inverse(a: Array) -> Array:
-    z = quaternion.inverse(a[..., :4], check=False)
-    return np.concatenate([z, -quaternion.multiply(quaternion.multiply(z, a[..., 4:]), z)], axis=-1)
-
-
-def _unit_dual(a: Array) -> Array:
-    """Divide by |z|, and take from w what is along z."""
-    size = np.linalg.norm(a[..., :4], axis=-1, keepdims=True)
-    z, w = a[..., :4] / size, a[..., 4:] / size
-    return np.concatenate([z, w - np.sum(z * w, axis=-1, keepdims=True) * z], axis=-1)
 
 
 def _unit_dual_defect(a: Array) -> Array:
@@ -77,8 +52,8 @@ def _normalized(unit: int) -> Callable[[Array], Array]:
 
 _C = (2, _complex_product, lambda a: _real(1.0 / _complex(a)))
 _H = (4, quaternion.multiply, lambda a: quaternion.inverse(a, check=False))
-_D = (4, _dual_quaternion_product, _dual_quaternion_inverse)
-_DUAL_C = (2, _dual_complex_product, lambda a: a * np.array([1.0, -1.0, -1.0, -1.0]))
+_D = (4, dual_quaternion.multiply, lambda a: dual_quaternion.inverse(a, check=False))
+_DUAL_C = (2, dual_complex.multiply, lambda a: dual_complex.inverse(a, check=False))
 
 NUMBERS = {
     "C^x": _numbers(*_C),
@@ -86,7 +61,7 @@ NUMBERS = {
     "H^x": _numbers(*_H),
     "S^3": _numbers(*_H, _normalized(4), _unit_defect(4)),
     "DCN": _numbers(*_DUAL_C, _normalized(2), _unit_defect(2)),
-    "DQ": _numbers(*_D, _unit_dual, _unit_dual_defect),
+    "DQ": _numbers(*_D, lambda a: dual_quaternion.normalize(a, check=False), _unit_dual_defect),
     "DQ^x": _numbers(*_D),
 }
 

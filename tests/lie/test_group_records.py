@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from lietool.lie import groups, so3
+from lietool.lie import groups, polar, so3
 from lietool.lie.groups import GROUPS, MAPS
 
 CASES = [(name, n) for name, g in GROUPS.items() for n in ((2, 3) if g.only is None else (g.only,))]
@@ -257,7 +257,8 @@ def test_products_of_groups(name, n):
             assert GROUPS[factor].dimension(n) < GROUPS[name].dimension(n)
 
 
-def test_kn_book_equation_2_8_a_rotated_translation():
+@pytest.mark.equation("B 2.8", "B 3.5")
+def test_a_rotated_translation():
     R, b = groups.sample("SE", seed=4), groups.sample("R", seed=5)
     R[:3, 3] = 0.0
     moved = R @ b @ np.linalg.inv(R)
@@ -395,6 +396,12 @@ def test_batches_equal_single_calls_and_own_their_memory(name, n):
     assert groups.is_member(name, empty).shape == (0, 5)
     assert groups.project(name, empty).shape == empty.shape
     assert groups.sample(name, (), 0, n).shape == GROUPS[name].shape(n)
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_the_nearest_rotation_is_that_of_polar(n):
+    A = RNG(4).normal(size=(50, n, n))
+    np.testing.assert_allclose(groups.project("SO", A), polar.rotation(A), atol=1e-12)
 
 
 def test_nearest_is_nearest():
