@@ -224,7 +224,9 @@ def _cited(docstring: str) -> Iterator[tuple[str, bool]]:
 
 
 def _tests(tree: ast.Module, file: str, found: Found) -> None:
-    for node in ast.walk(tree):
+    classes = [node for node in tree.body if isinstance(node, ast.ClassDef)]
+    # Markers stand above functions and classes; walking through the tests themselves would take the most time.
+    for node in [*tree.body, *(inner for outer in classes for inner in outer.body)]:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
             place = Place(node.name, file, node.lineno)
             for mark in (call for item in node.decorator_list for call in ast.walk(item)):
@@ -258,7 +260,8 @@ def _equations_of(where: str) -> list[str]:
 
 
 def _plates(tree: ast.Module, file: str, found: Found) -> None:
-    for node in ast.walk(tree):
+    decorators = [item for node in tree.body for item in getattr(node, "decorator_list", ())]
+    for node in (inner for item in decorators for inner in ast.walk(item)):
         if not isinstance(node, ast.Dict):
             continue
         for key, value in zip(node.keys, node.values, strict=True):
