@@ -175,8 +175,10 @@ def _plane_log(B: Array, size: Array) -> tuple[Array, NDArray[np.bool_]]:
     m, skew = 0.5 * (B[:, 0, 0] + B[:, 1, 1]), 0.5 * (B[:, 0, 0] - B[:, 1, 1])
     N = np.stack([skew, B[:, 0, 1], B[:, 1, 0], -skew], axis=-1).reshape(B.shape)
     delta = -(N[:, 0, 0] ** 2 + N[:, 0, 1] * N[:, 1, 0])
-    half_turn = np.max(np.abs(N), axis=(-1, -2)) <= series.ROUNDED * size
-    exists = half_turn | (delta > 0.0)
+    largest = np.max(np.abs(N), axis=(-1, -2))
+    half_turn = largest <= series.ROUNDED * size
+    # Below this delta may be the rounding of 0: a shear, whose logarithm would be as large as that is small.
+    exists = half_turn | (delta > series.ROUNDED * size * largest)
     root = np.sqrt(np.where(exists & ~half_turn, delta, 1.0))
     angle = np.where(half_turn, np.pi, np.arctan2(root, m))
     J = np.where(half_turn[:, None, None], np.array([[0.0, -1.0], [1.0, 0.0]]), N / root[:, None, None])

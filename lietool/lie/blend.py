@@ -20,8 +20,8 @@ left or A -> A G from the right, with weights of sum 1, the blend follows
     grassia, phi_so        for translations from the left only
     alexa, phi_se          for neither
 
-but A -> G A G^-1 is followed by `alexa` for every G, by the others for
-rotations, and among rigid A by `phi_se` for rigid G.
+but A -> G A G^-1 is followed by `linear` and `alexa` for every G, by the others
+for rotations, and among rigid A by the dual quaternions and `phi_se` for rigid G.
 """
 
 from collections.abc import Callable

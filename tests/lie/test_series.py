@@ -38,6 +38,12 @@ CASES = {
         2.0,
         4,
     ),
+    "sinc_slope": (
+        lambda t: (mpmath.sin(t) - t * mpmath.cos(t)) / t**3,
+        [F((-1) ** k * (2 * k + 2), factorial(2 * k + 3)) for k in range(12)],
+        1.0,
+        5,
+    ),
     "versinc_slope": (
         lambda t: (t * mpmath.sin(t) - 4 * mpmath.sin(t / 2) ** 2) / t**4,
         [F((-1) ** (k + 1) * (2 * k + 2), factorial(2 * k + 4)) for k in range(12)],
