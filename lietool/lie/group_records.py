@@ -133,7 +133,7 @@ _MATRICES = (
         unreachable=lambda n: _two_negative(n, -1.0, -2.0),
     ),
     Group(
-        *("SL", "linear maps that keep volume", ("4.14",), lambda n: n * n - 1, _square),
+        *("SL", "linear maps that keep volume", (), lambda n: n * n - 1, _square),
         *(1, False, _never, "sl(n)", False, False),
         "negative eigenvalues of a real exponential come in equal pairs, and -2, -1/2 is none; " + _TURNS,
         unreachable=lambda n: _two_negative(n, -2.0, -0.5),

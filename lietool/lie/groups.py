@@ -58,7 +58,7 @@ def is_member(name: str, A: ArrayLike, tol: float = checks.TOLERANCE) -> NDArray
     singular if its smallest singular value is rounding.
 
     Book: (2.2), (2.3), (2.4), (2.6), (2.12), (2.13), (2.20), (2.25), (2.36), (2.38), (2.40), (2.42), (2.43)
-    Book: (3.1), (3.2), (3.3), (3.4), (4.5), (4.12), (4.13), (4.14), (4.15), (4.16), (4.18), (4.19)
+    Book: (3.1), (3.2), (3.3), (3.4), (4.5), (4.12), (4.13), (4.15), (4.16), (4.18), (4.19)
 
     Parameters
     ----------
