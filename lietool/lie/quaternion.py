@@ -73,7 +73,7 @@ def conjugate(q: ArrayLike) -> Array:
 def dot(q: ArrayLike, p: ArrayLike) -> Array:
     """Return the inner product of R^4, the real part of p q^-1 for unit quaternions.
 
-    Book: (2.32)
+    Book: (2.32) for its cosine
 
     Parameters
     ----------

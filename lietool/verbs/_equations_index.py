@@ -17,17 +17,8 @@ TEXTS = {"B": "Book", "M": "MEIS", "K": "Kaji-Ochiai"}
 _MATHEMATICS = ("lie", "mesh", "interp", "deform")
 # Of several functions the plainest comes first; those of other modules stand between these and the last.
 _FIRST = (
-    "so2",
-    "so3",
-    "quaternion",
-    "euler",
-    "se2",
-    "se3",
-    "sym",
-    "polar",
-    "affine",
-    "blend",
-    "dual_complex",
+    *("so2", "so3", "quaternion", "euler", "se2", "se3"),
+    *("affine", "polar", "sym", "blend", "generic", "dual_complex"),
 )
 _LAST = ("groups", "series")
 _CITES = re.compile(rf"^({'|'.join(TEXTS.values())}): (.+(?:\n\(.+)*)", re.MULTILINE)
@@ -225,14 +216,17 @@ def _cited(docstring: str) -> Iterator[tuple[str, bool]]:
 
 def _tests(tree: ast.Module, file: str, found: Found) -> None:
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef)]
-    # Markers stand above functions and classes; walking through the tests themselves would take the most time.
+    # Markers stand above functions and classes; walking through all of a test would take most of the time.
     for node in [*tree.body, *(inner for outer in classes for inner in outer.body)]:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
             place = Place(node.name, file, node.lineno)
             for mark in (call for item in node.decorator_list for call in ast.walk(item)):
                 kind = _mark(mark)
-                for number in (kind and _strings(mark)) or ():
-                    (found.tests if kind == "equation" else found.errata).setdefault(number, []).append(place)
+                for cited in _strings(mark) if kind else ():
+                    for number in _equations_of(cited) if kind == "erratum" else [cited]:
+                        (found.errata if kind == "erratum" else found.tests).setdefault(number, []).append(
+                            place
+                        )
 
 
 def _mark(node: ast.AST) -> str:
@@ -255,7 +249,7 @@ def _equations_of(where: str) -> list[str]:
     """The equations that a place such as ``B 6.1, 6.3`` or ``K (8) near pi`` names; a section is none."""
     if where.endswith("(text)"):
         return []
-    number = r"(?:A|\d+)\.\d+(?![\d.])|\(\d+\)|Alg\. 1"
+    number = r"(?:A|\d+)\.\d+(?![\d.])|\(\d+\)|(?<=^[MK] )\d+$|Alg\. 1"
     return [f"{where[0]} {n.strip('()').replace('Alg.', 'Algorithm')}" for n in re.findall(number, where)]
 
 

@@ -1,5 +1,6 @@
 """List the numbered equations: what each says, where it is computed, which test proves it."""
 
+import functools
 import json
 import os
 import re
@@ -48,6 +49,7 @@ def command(which: tuple[str, ...], as_json: bool) -> None:
         _show(chosen)
 
 
+@functools.cache
 def index() -> list[Equation]:
     """Return all equations: in a wheel as they were read when it was built, in a checkout as they are now."""
     if BUILT.is_file():
@@ -117,13 +119,17 @@ def example(equation: Equation) -> list[tuple[str, str]]:
     """
     from lietool.verbs import _equations_example
 
-    listed = tomllib.loads(LIST.read_text(encoding="utf-8"))["examples"]
-    if equation.number in listed:
-        return _equations_example.of_expressions(listed[equation.number])
+    if equation.number in _examples():
+        return _equations_example.of_expressions(_examples()[equation.number])
     for place in equation.functions:
         if place.file.startswith("lietool/lie/"):
             return _equations_example.of_function(place.name)
     return []
+
+
+@functools.cache
+def _examples() -> dict[str, list[str]]:
+    return tomllib.loads(LIST.read_text(encoding="utf-8"))["examples"]
 
 
 def _key(words: str) -> str:
