@@ -176,7 +176,7 @@ def test_the_classes_are_what_they_are_called_and_have_their_dimensions(n):
     assert affine.classify(np.eye(n + 1)) == "dilation"
 
 
-@pytest.mark.erratum("B 7.1, M 1 (text)")
+@pytest.mark.erratum("B 7.1", "M 1")
 def test_psi_cannot_be_continuous_along_a_full_turn():
     t = np.linspace(0.0, 1.0, 401)
     A = np.tile(np.eye(4), (401, 1, 1))

@@ -63,7 +63,7 @@ def test_singular_values_and_vectors(n):
 
 @pytest.mark.parametrize("n", [2, 3])
 def test_small_singular_values_keep_their_digits(n):
-    """A graded matrix, whose columns differ by 1e12: its small singular values are as exact as its large ones."""
+    """Of a matrix with columns of very different length, they are as exact as the large ones."""
     rng = np.random.default_rng(8)
     for scale in ((1.0, 1e-12, 1e-6), (1e-12, 1e-3, 1.0)):
         A = rng.normal(size=(5, n, n)) * np.array(scale)[:n]

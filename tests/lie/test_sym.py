@@ -1,4 +1,4 @@
-"""Functions of symmetric matrices against 50 digits: equal, nearly equal, widely spread eigenvalues, all scales."""
+"""Functions of symmetric matrices against 50 digits: equal, nearly equal and widely spread eigenvalues."""
 
 import mpmath
 import numpy as np
@@ -45,9 +45,9 @@ def frames(n: int) -> list[np.ndarray]:
 
 
 def with_spectrum(Q: np.ndarray, d) -> np.ndarray:
-    Q = mpmath.matrix(Q.tolist())
-    S = Q * mpmath.diag([mpmath.mpf(float(x)) for x in d[: Q.rows]]) * Q.T
-    S = np.array(S.tolist(), dtype=float)
+    M = mpmath.matrix(Q.tolist())
+    product = M * mpmath.diag([mpmath.mpf(float(x)) for x in d[: len(Q)]]) * M.T
+    S = np.array(product.tolist(), dtype=float)
     return 0.5 * (S + S.T)
 
 
