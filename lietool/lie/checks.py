@@ -96,12 +96,17 @@ def rotation(where: str, name: str, R: ArrayLike, n: int, check: bool = True) ->
 
 def rigid(where: str, name: str, T: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:
     """Return T as a float64 array of homogeneous matrices: a rotation, a translation, the row 0 ... 0 1."""
-    a = array(where, name, T, (n + 1, n + 1), check)
+    a = array(where, name, T, (n + 1, n + 1), check=False)
     if not check or not a.size:
         return a
-    defect = blocks.run(kernels.space_rigid_defect if n == 3 else kernels.plane_rigid_defect, (), (a, 2))
-    if np.max(defect) <= 0.125 * TOLERANCE:
+    kernel = kernels.space_rigid_defect if n == 3 else kernels.plane_rigid_defect
+    good = 0.125 * TOLERANCE
+    with np.errstate(invalid="ignore", over="ignore"):
+        # One pass for all: a translation of the largest size allowed counts as a defect that is just allowed.
+        defect = blocks.run(lambda T: kernel(T, good / LARGEST), (), (a, 2))
+    if np.max(defect) <= good:
         return a
+    array(where, name, a, (n + 1, n + 1))
     bottom = np.max(np.abs(a[..., n, :] - np.eye(n + 1)[n]), axis=-1)
     if np.any(bottom > TOLERANCE):
         index = first(bottom > TOLERANCE)

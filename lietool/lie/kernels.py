@@ -134,7 +134,7 @@ def rigid_exp(x: Array) -> Rows:
 
 def rigid_log(T: Array) -> Rows:
     """Return the principal logarithm of a rigid transformation, (7.8) in the form that holds at pi."""
-    w, *v = shepperd(np.concatenate([T[0:3], T[4:7], T[8:11]]))
+    w, *v = shepperd((*T[0:3], *T[4:7], *T[8:11]))
     d = T[3], T[7], T[11]
     s = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
     f = 2.0 * series.angle_over_sine(s, w)
@@ -242,7 +242,7 @@ def quaternion_log(q: Rows | Array) -> Rows:
     return np.where(opposite, np.pi, f * x), f * y, f * z
 
 
-def space_defect(R: Array) -> Rows:
+def space_defect(R: Vector) -> Rows:
     """Measure how far the columns of R are from |a| = |b| = 1, a . b = 0, c = a x b: R^T R and det in one."""
     ax, bx, cx, ay, by, cy, az, bz, cz = R
     worst = np.abs(ax * ax + ay * ay + az * az - 1.0)
@@ -257,26 +257,28 @@ def space_defect(R: Array) -> Rows:
     return (worst,)
 
 
-def plane_defect(R: Array) -> Rows:
+def plane_defect(R: Vector) -> Rows:
     """Measure how far the columns (a, c), (b, d) of R are from |(a, c)| = 1, d = a, b = -c."""
     a, b, c, d = R
     return (np.maximum(np.abs(a * a + c * c - 1.0), np.maximum(np.abs(a - d), np.abs(b + c))),)
 
 
-def _and_bottom(worst: Array, bottom: Array) -> Rows:
-    """Return the larger of a defect and that of a bottom row from 0 ... 0 1."""
-    for row in bottom[:-1]:
-        worst = np.maximum(worst, np.abs(row))
-    return (np.maximum(worst, np.abs(bottom[-1] - 1.0)),)
+def _and_the_rest(worst: Array, d: Array, bottom: Array, unit: float) -> Rows:
+    """Return the largest of a defect, that of a bottom row from 0 ... 0 1, and a translation in a unit."""
+    for row in (*bottom[:-1], bottom[-1] - 1.0):
+        np.maximum(worst, np.abs(row), out=worst)
+    for row in d:
+        np.maximum(worst, np.abs(unit * row), out=worst)
+    return (worst,)
 
 
-def space_rigid_defect(T: Array) -> Rows:
-    """Measure the rotation part's defect and the bottom row's; the translation is not looked at."""
-    (worst,) = space_defect(np.concatenate([T[0:3], T[4:7], T[8:11]]))
-    return _and_bottom(worst, T[12:])
+def space_rigid_defect(T: Array, unit: float) -> Rows:
+    """Measure the rotation part's defect, the bottom row's, and the translation in a very long unit."""
+    (worst,) = space_defect((*T[0:3], *T[4:7], *T[8:11]))
+    return _and_the_rest(worst, T[3:12:4], T[12:], unit)
 
 
-def plane_rigid_defect(T: Array) -> Rows:
+def plane_rigid_defect(T: Array, unit: float) -> Rows:
     """Measure the same in the plane."""
-    (worst,) = plane_defect(np.concatenate([T[0:2], T[3:5]]))
-    return _and_bottom(worst, T[6:])
+    (worst,) = plane_defect((*T[0:2], *T[3:5]))
+    return _and_the_rest(worst, T[2:6:3], T[6:], unit)
