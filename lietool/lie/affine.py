@@ -218,22 +218,28 @@ def psi_se_near(A: ArrayLike, reference: ArrayLike, *, check: bool = True) -> ND
     ------
     ValueError
         If A is not affine, its determinant is not positive, or the reference is
-        not finite; or if the nearest rotation is a whole number of turns, which
-        no screw motion with this translation makes.
+        not finite; or if the nearest rotation is a whole number of turns and
+        the translation not along its axis: no screw motion does both.
     """
     p, n = _near("affine.psi_se_near", A, reference, check)
     x, d = (p[..., :3], p[..., 3:6]) if n == 3 else (p[..., 0], p[..., 1:3])
     theta = np.linalg.norm(x, axis=-1) if n == 3 else x
     whole = series.at_pole(theta)
     if check and np.any(whole):
-        index = checks.first(whole)
-        got = f"an angle of {theta[index]:.17g}"
-        remedy = "No screw motion makes whole turns and this translation; take another reference, or phi_so."
-        checks.fail("affine.psi_se_near", "reference", "one that leads to no whole turn", got, index, remedy)
+        unit = x / np.where(whole, theta, 1.0)[..., None] if n == 3 else np.zeros_like(d)
+        across = np.linalg.norm(d - np.sum(unit * d, axis=-1, keepdims=True) * unit, axis=-1)
+        impossible = whole & (across > checks.TOLERANCE**2 * np.linalg.norm(d, axis=-1))
+        if np.any(impossible):
+            index = checks.first(impossible)
+            must, got = "one that leads to no whole turn", f"an angle of {theta[index]:.17g}"
+            remedy = "No screw motion turns so and moves off its axis; take another reference, or phi_so."
+            checks.fail("affine.psi_se_near", "reference", must, got, index, remedy)
+    # After whole turns a screw motion has gone along its axis only, by l itself.
     if n == 3:
-        p[..., 3:6] = so3.act(so3.left_jacobian_inverse(x, check=False), d)
+        back = so3.act(so3.left_jacobian_inverse(np.where(whole[..., None], 0.0, x), check=False), d)
     else:
-        p[..., 1:3] = np.stack(affine_kernels.back_plane(x, d[..., 0], d[..., 1]), axis=-1)
+        back = np.stack(affine_kernels.back_plane(np.where(whole, 0.0, x), d[..., 0], d[..., 1]), axis=-1)
+    d[...] = back
     return p
 
 

@@ -234,6 +234,10 @@ def test_no_screw_motion_makes_whole_turns_and_a_translation():
     reference[1] = 6.0
     with pytest.raises(ValueError, match=r"no whole turn; got an angle of 6\.28"):
         affine.psi_se_near(A, reference)
+    A[:3, 3] = 0.0, 3.0, 0.0  # along the axis
+    p = affine.psi_se_near(A, reference)
+    np.testing.assert_allclose(p[:6], [0, 2 * np.pi, 0, 0, 3, 0], atol=1e-14)
+    np.testing.assert_allclose(affine.phi_se(p), A, atol=1e-14)
     np.testing.assert_allclose(affine.phi_so(affine.psi_so_near(A, reference)), A, atol=1e-15)
 
 
