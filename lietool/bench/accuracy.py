@@ -8,7 +8,7 @@ import numpy as np
 from lietool.bench import exact, inputs, others, subjects
 from lietool.bench.subjects import Subject
 
-FULL, QUICK = 20, 3
+FULL, QUICK = 12, 3
 """Axes or positions of each input."""
 
 
@@ -39,10 +39,17 @@ class Row:
 
 
 def rows(count: int = FULL, libraries: Iterable[str] = ()) -> Iterator[Row]:
-    """Measure everything.
+    """Measure every function, class by class; for the arguments see `rows_of`."""
+    for subject in subjects.SUBJECTS:
+        yield from rows_of(subject, count, tuple(libraries))
+
+
+def rows_of(subject: Subject, count: int = FULL, libraries: Iterable[str] = ()) -> Iterator[Row]:
+    """Measure one function.
 
     Parameters
     ----------
+    subject : Subject
     count : int
         Axes or positions of each input.
     libraries : iterable of str
@@ -51,12 +58,10 @@ def rows(count: int = FULL, libraries: Iterable[str] = ()) -> Iterator[Row]:
     Yields
     ------
     Row
-        Function by function, class by class.
+        Class by class.
     """
-    libraries = tuple(libraries)
-    for subject in subjects.SUBJECTS:
-        for name, elements in inputs.FAMILIES[subject.inputs](count).items():
-            yield _row(subject, name, elements, libraries)
+    for name, elements in inputs.FAMILIES[subject.inputs](count).items():
+        yield _row(subject, name, elements, tuple(libraries))
 
 
 def _row(subject: Subject, name: str, elements: np.ndarray, libraries: tuple[str, ...]) -> Row:

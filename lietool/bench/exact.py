@@ -1,4 +1,4 @@
-"""The functions of `lietool.lie` for one element, to 50 digits, by formulas that need not care about rounding.
+"""The functions of `lietool.lie` for one element, to 50 digits, where formulas need not care about rounding.
 
 Each takes one element as nested lists of floats, and returns its candidates:
 the values that are right, mostly one.  A value is a tuple of blocks, such as
@@ -6,15 +6,17 @@ rotation and translation, and a block is a flat list of numbers.
 """
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import mpmath
 
 Number = mpmath.mpf
+Matrix = Any
 Block = list
 Value = tuple[Block, ...]
 
 # Ten digits more than are asked for, and a context of its own: nobody else's precision changes.
-MP = mpmath.MPContext()
+MP: Any = mpmath.MPContext()
 MP.dps = 60
 
 _HALF_TURN = 1e-14
@@ -25,11 +27,11 @@ def _vector(x: Sequence[float]) -> list:
     return [MP.mpf(float(v)) for v in x]
 
 
-def _matrix(A: Sequence[Sequence[float]]) -> mpmath.matrix:
+def _matrix(A: Sequence[Sequence[float]]) -> Matrix:
     return MP.matrix([[float(v) for v in row] for row in A])
 
 
-def _flat(M: mpmath.matrix) -> Block:
+def _flat(M: Matrix) -> Block:
     return [M[i, j] for i in range(M.rows) for j in range(M.cols)]
 
 
@@ -37,15 +39,15 @@ def _norm(x: Sequence) -> Number:
     return MP.sqrt(sum((v * v for v in x), MP.mpf(0)))
 
 
-def _hat(x: Sequence) -> mpmath.matrix:
+def _hat(x: Sequence) -> Matrix:
     return MP.matrix([[0, -x[2], x[1]], [x[2], 0, -x[0]], [-x[1], x[0], 0]])
 
 
-def _apply(M: mpmath.matrix, v: Sequence) -> list:
+def _apply(M: Matrix, v: Sequence) -> list:
     return [sum((M[i, j] * v[j] for j in range(len(v))), MP.mpf(0)) for i in range(len(v))]
 
 
-def _exp(x: Sequence) -> mpmath.matrix:
+def _exp(x: Sequence) -> Matrix:
     theta = _norm(x)
     if not theta:
         return MP.eye(3)
@@ -53,7 +55,7 @@ def _exp(x: Sequence) -> mpmath.matrix:
     return MP.eye(3) + MP.sin(theta) / theta * X + 2 * (MP.sin(theta / 2) / theta) ** 2 * X * X
 
 
-def _jacobian(x: Sequence) -> mpmath.matrix:
+def _jacobian(x: Sequence) -> Matrix:
     theta = _norm(x)
     if not theta:
         return MP.eye(3)
@@ -63,14 +65,14 @@ def _jacobian(x: Sequence) -> mpmath.matrix:
     return MP.eye(3) + 2 * (MP.sin(theta / 2) / theta) ** 2 * X + third * X * X
 
 
-def _nearest_rotation(R: mpmath.matrix) -> mpmath.matrix:
+def _nearest_rotation(R: Matrix) -> Matrix:
     """Newton's iteration: the error of a rounded rotation is squared three times."""
     for _ in range(4):
         R = (R + (R**-1).T) / 2
     return R
 
 
-def _quaternion(R: mpmath.matrix) -> list:
+def _quaternion(R: Matrix) -> list:
     """Shepperd's choice of the largest component, w >= 0."""
     trace = R[0, 0] + R[1, 1] + R[2, 2]
     squares = [1 + trace] + [1 + 2 * R[i, i] - trace for i in range(3)]
@@ -86,7 +88,7 @@ def _quaternion(R: mpmath.matrix) -> list:
     return [v / scale for v in q]
 
 
-def _logs(R: mpmath.matrix) -> list[list]:
+def _logs(R: Matrix) -> list[list]:
     q = _quaternion(_nearest_rotation(R))
     sine = _norm(q[1:])
     if not sine:
@@ -96,12 +98,12 @@ def _logs(R: mpmath.matrix) -> list[list]:
     return [[angle * v / sine for v in q[1:]] for angle in angles]
 
 
-def _of_eigenvalues(f: Callable, S: mpmath.matrix) -> mpmath.matrix:
+def _of_eigenvalues(f: Callable, S: Matrix) -> Matrix:
     d, Q = MP.eigsy(S)
     return Q * MP.diag([f(v) for v in d]) * Q.T
 
 
-def _symmetric(y: Sequence) -> mpmath.matrix:
+def _symmetric(y: Sequence) -> Matrix:
     xx, xy, xz, yy, yz, zz = y
     return MP.matrix([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
@@ -152,7 +154,7 @@ def so2_log(R: Sequence) -> list[Value]:
     return [([x],), ([x - MP.sign(x) * 2 * MP.pi],)] if MP.pi - abs(x) < _HALF_TURN else [([x],)]
 
 
-def _plane_jacobian(x: Number) -> mpmath.matrix:
+def _plane_jacobian(x: Number) -> Matrix:
     if not x:
         return MP.eye(2)
     a, b = MP.sin(x) / x, 2 * MP.sin(x / 2) ** 2 / x

@@ -206,7 +206,9 @@ def linear(count: int) -> Classes:
         "equal": _turned(equal, count),
         "nearly equal": _turned([(1.0, 1.0 + g, 1.0 - 0.5 * g) for g in GAPS], count),
         "condition to 1e6": _turned([(1.0, c**-0.4, 1.0 / c) for c in CONDITIONS[1:4]], count),
-        "condition 1e9, 1e12": _turned([(1.0, c**-h, 1.0 / c) for c in CONDITIONS[4:] for h in (0.4, 1.0)], count),
+        "condition 1e9, 1e12": _turned(
+            [(1.0, c**-h, 1.0 / c) for c in CONDITIONS[4:] for h in (0.4, 1.0)], count
+        ),
         "scale 1e-50 to 1e50": _turned([(s, 2.0 * s, 0.1 * s) for s in SCALES], count),
         "determinant 1e-30": _turned([(1e-10, 1e-10, 1e-10), (1e-5, 1e-10, 1e-15)], count),
     }

@@ -4,6 +4,7 @@ import importlib
 import importlib.util
 import warnings
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -53,7 +54,7 @@ def _hat_rigid(x: np.ndarray) -> np.ndarray:
     return X
 
 
-def _vee(X: np.ndarray) -> np.ndarray:
+def _vee(X: Any) -> np.ndarray:
     X = np.real(X)
     return 0.5 * np.array([X[2, 1] - X[1, 2], X[0, 2] - X[2, 0], X[1, 0] - X[0, 1]])
 
