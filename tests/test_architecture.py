@@ -53,6 +53,8 @@ RULES = {
     "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib imageio"),
     "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest"),
     "verbs": _rule(_ALL, "click", "numpy PIL rich moderngl"),
+    # Imported by a verb when it is called, so what it needs may stand at its top.
+    "a part of a verb": _rule(_ALL, "click numpy", "PIL rich moderngl"),
     "a figure": _rule("figure bench lie mesh interp deform render", "numpy"),
 }
 # Modules that may import more than the rest of their part.
@@ -86,6 +88,8 @@ def _part(file: Path) -> str:
     if file.is_relative_to(paths.FIGURES):
         return "a figure"
     first = file.relative_to(paths.PACKAGE).parts[0].removesuffix(".py")
+    if first == "verbs" and file.name.startswith("_") and file.name != "__init__.py":
+        return "a part of a verb"
     return "lietool" if first == "__init__" else first
 
 
