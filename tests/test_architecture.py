@@ -33,7 +33,7 @@ def _rule(ours: str = "", others: str = "", lazily: str = "", ours_lazily: str =
 
 
 _BELOW = "paths atomic cache"
-_ALL = "lie mesh interp deform render golden figure verbs lietool " + _BELOW
+_ALL = "bench lie mesh interp deform render golden figure verbs lietool " + _BELOW
 RULES = {
     "lietool": _rule(),
     "paths": _rule(),
@@ -49,13 +49,20 @@ RULES = {
     "mesh": _rule("mesh lie", "numpy", "scipy trimesh skimage"),
     "interp": _rule("interp lie mesh", "numpy", "scipy skimage"),
     "deform": _rule("deform lie mesh", "numpy", "scipy skimage"),
+    "bench": _rule("bench lie", "numpy mpmath", "scipy pytransform3d"),
     "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib imageio"),
     "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest"),
     "verbs": _rule(_ALL, "click", "numpy PIL rich moderngl"),
-    "a figure": _rule("figure lie mesh interp deform render", "numpy"),
+    # Imported by a verb when it is called, so what it needs may stand at its top.
+    "a part of a verb": _rule(_ALL, "click numpy", "PIL rich moderngl"),
+    "a figure": _rule("figure bench lie mesh interp deform render", "numpy"),
 }
 # Modules that may import more than the rest of their part.
-EXCEPTIONS = {"lie": {"scipy": {"generic"}}, "golden": {"pytest": {"plugin"}}}
+EXCEPTIONS = {
+    "lie": {"scipy": {"generic"}},
+    "bench": {"mpmath": {"exact"}, "scipy": {"others"}, "pytransform3d": {"others"}},
+    "golden": {"pytest": {"plugin"}},
+}
 
 
 @dataclass(frozen=True)
@@ -81,6 +88,8 @@ def _part(file: Path) -> str:
     if file.is_relative_to(paths.FIGURES):
         return "a figure"
     first = file.relative_to(paths.PACKAGE).parts[0].removesuffix(".py")
+    if first == "verbs" and file.name.startswith("_") and file.name != "__init__.py":
+        return "a part of a verb"
     return "lietool" if first == "__init__" else first
 
 

@@ -62,6 +62,23 @@ def array(
     return a
 
 
+def square(where: str, name: str, x: ArrayLike, check: bool = True, leading: int = 0) -> NDArray[np.float64]:
+    """Return x as a float64 array of square matrices, or of lists of them where `leading` is 1."""
+    a = array(where, name, x, (), check=False)
+    if a.ndim < 2 + leading or a.shape[-1] != a.shape[-2]:
+        wanted = "(..., k, n, n)" if leading else "(..., n, n)"
+        fail(where, name, f"an array of shape {wanted}", f"shape {a.shape}", None)
+    return array(where, name, a, a.shape[a.ndim - 2 - leading :], check)
+
+
+def vector(where: str, name: str, x: ArrayLike, check: bool = True) -> NDArray[np.float64]:
+    """Return x as a float64 array of vectors of any length but 0."""
+    a = array(where, name, x, (), check=False)
+    if a.ndim < 1 or not a.shape[-1]:
+        fail(where, name, "an array of shape (..., n)", f"shape {a.shape}", None)
+    return array(where, name, a, a.shape[-1:], check)
+
+
 def rotation(where: str, name: str, R: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:
     """Return R as a float64 array of rotations: no entry of |R^T R - I| above TOLERANCE, det R > 0."""
     a = array(where, name, R, (n, n), check=False)
@@ -73,16 +90,44 @@ def rotation(where: str, name: str, R: ArrayLike, n: int, check: bool = True) ->
     if np.max(defect) <= 0.125 * TOLERANCE:
         return a
     array(where, name, a, (n, n))
-    gram = np.max(np.abs(np.swapaxes(a, -1, -2) @ a - np.eye(n)), axis=(-1, -2))
+    _orthogonal(where, name, a, "a rotation")
+    return a
+
+
+def rigid(where: str, name: str, T: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:
+    """Return T as a float64 array of homogeneous matrices: a rotation, a translation, the row 0 ... 0 1."""
+    a = array(where, name, T, (n + 1, n + 1), check=False)
+    if not check or not a.size:
+        return a
+    kernel = kernels.space_rigid_defect if n == 3 else kernels.plane_rigid_defect
+    good = 0.125 * TOLERANCE
+    with np.errstate(invalid="ignore", over="ignore"):
+        # One pass for all: a translation of the largest size allowed counts as a defect that is just allowed.
+        defect = blocks.run(lambda T: kernel(T, good / LARGEST), (), (a, 2))
+    if np.max(defect) <= good:
+        return a
+    array(where, name, a, (n + 1, n + 1))
+    bottom = np.max(np.abs(a[..., n, :] - np.eye(n + 1)[n]), axis=-1)
+    if np.any(bottom > TOLERANCE):
+        index = first(bottom > TOLERANCE)
+        row = " ".join(f"{entry:.3g}" for entry in a[index][n])
+        fail(where, name, f"a rigid transformation, last row {'0 ' * n}1", f"last row {row}", index)
+    _orthogonal(where, name, a[..., :n, :n], "a rigid transformation")
+    return a
+
+
+def _orthogonal(where: str, name: str, R: NDArray[np.float64], what: str) -> None:
+    """Refuse what is not a rotation, or not one as a part of something else."""
+    n = R.shape[-1]
+    gram = np.max(np.abs(np.swapaxes(R, -1, -2) @ R - np.eye(n)), axis=(-1, -2))
     if np.any(gram > TOLERANCE):
         index = first(gram > TOLERANCE)
         remedy = "Project it onto the rotations first."
-        fail(where, name, f"a rotation, |R^T R - I| <= {TOLERANCE:.0e}", f"{gram[index]:.1e}", index, remedy)
-    flipped = np.linalg.det(a) < 0
+        fail(where, name, f"{what}, |R^T R - I| <= {TOLERANCE:.0e}", f"{gram[index]:.1e}", index, remedy)
+    flipped = np.linalg.det(R) < 0
     if np.any(flipped):
         remedy = "A reflection has no logarithm here; flip one axis."
-        fail(where, name, "a rotation, det > 0", "det = -1", first(flipped), remedy)
-    return a
+        fail(where, name, f"{what}, det > 0", "det = -1", first(flipped), remedy)
 
 
 def unit(where: str, name: str, x: ArrayLike, n: int, check: bool = True) -> NDArray[np.float64]:

@@ -11,6 +11,10 @@ from lietool.lie.blocks import Rows
 
 Array = NDArray[np.float64]
 
+Vector = Rows | Array
+
+_ZERO, _ONE = np.zeros(()), np.ones(())
+
 
 def matrix(q: Rows) -> Rows:
     """Return the matrix of p -> q p q^-1, (2.28), for any q but 0."""
@@ -73,7 +77,7 @@ def left_jacobian_inverse(x: Array) -> Rows:
     return _second_order(x, -0.5, series.cotangent_defect(theta))
 
 
-def shepperd(R: Array) -> Rows:
+def shepperd(R: Rows | Array) -> Rows:
     """Return a positive multiple of the quaternion of R, with w >= 0.
 
     The ten products 4 q_i q_j are linear in R.  They form a symmetric matrix
@@ -106,14 +110,110 @@ def rotation_log(R: Array) -> Rows:
     return f * x, f * y, f * z
 
 
-def quaternion(R: Array) -> Rows:
+def _cross(a: Vector, b: Vector) -> Rows:
+    """Return the cross product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _rigid(R: Rows, d: Rows) -> Rows:
+    """Return the homogeneous matrix of p -> R p + d, (2.43)."""
+    return *R[:3], d[0], *R[3:6], d[1], *R[6:], d[2], _ZERO, _ZERO, _ZERO, _ONE
+
+
+def rigid_exp(x: Array) -> Rows:
+    """Return the screw motion of a twist, (7.4) and (7.5); X p is the cross product with the first half."""
+    r, t = x[:3], x[3:]
+    theta = np.sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
+    h = 0.5 * theta
+    a = 0.5 * series.sinc(h)
+    R = matrix((np.cos(h), a * r[0], a * r[1], a * r[2]))
+    b, c = 2.0 * a * a, series.sine_defect(theta)
+    d = _cross(r, [b * ti + c * rt for ti, rt in zip(t, _cross(r, t), strict=True)])
+    return _rigid(R, [ti + di for ti, di in zip(t, d, strict=True)])
+
+
+def rigid_log(T: Array) -> Rows:
+    """Return the principal logarithm of a rigid transformation, (7.8) in the form that holds at pi."""
+    w, *v = shepperd((*T[0:3], *T[4:7], *T[8:11]))
+    d = T[3], T[7], T[11]
+    s = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+    f = 2.0 * series.angle_over_sine(s, w)
+    r = [f * vi for vi in v]
+    c = series.cotangent_defect(f * s)
+    turned = _cross(r, [0.5 * di - c * rd for di, rd in zip(d, _cross(r, d), strict=True)])
+    return *r, *(di - ti for di, ti in zip(d, turned, strict=True))
+
+
+def _derivative(x: Vector, y: Vector, v: Rows, b: Array, b_slope: Array) -> Rows:
+    """Return V + b (X Y + Y X) + (x . y) b_slope X^2, capitals being the matrices of the vectors."""
+    s = x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
+    e = s * b_slope
+    z = [b * yi + 0.5 * e * xi for xi, yi in zip(x, y, strict=True)]
+    # X Y + Y X = x y^T + y x^T - 2 (x . y) I, so that what remains is x z^T + z x^T - 2 (x . z) I.
+    xx, yy, zz = (2.0 * xi * zi for xi, zi in zip(x, z, strict=True))
+    xy, xz, yz = (x[i] * z[j] + x[j] * z[i] for i, j in ((0, 1), (0, 2), (1, 2)))
+    return (
+        *(-(yy + zz), xy - v[2], xz + v[1]),
+        *(xy + v[2], -(xx + zz), yz - v[0]),
+        *(xz - v[1], yz + v[0], -(xx + yy)),
+    )
+
+
+def _lower(V: Rows, Q: Rows) -> Rows:
+    """Return the 6 x 6 matrix of the blocks V, 0; Q, V."""
+    zeros = (_ZERO,) * 3
+    upper = (entry for i in (0, 3, 6) for entry in (*V[i : i + 3], *zeros))
+    lower = (entry for i in (0, 3, 6) for entry in (*Q[i : i + 3], *V[i : i + 3]))
+    return *upper, *lower
+
+
+def rigid_left_jacobian(x: Array) -> Rows:
+    """Return V, 0; Q, V: V of (7.5) at the rotation r, and Q its derivative along the translation t.
+
+    For the series of (e^z - 1) / z in ad x, a block triangular matrix with
+    the diagonal X, X, has the derivative of its value at X beside the diagonal.
+    """
+    r, t = x[:3], x[3:]
+    theta = np.sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
+    b, c = series.versinc(theta), series.sine_defect(theta)
+    e = (r[0] * t[0] + r[1] * t[1] + r[2] * t[2]) * series.versinc_slope(theta)
+    v = [b * ti + e * ri for ri, ti in zip(r, t, strict=True)]
+    return _lower(_second_order(r, b, c), _derivative(r, t, v, c, series.sine_defect_slope(theta)))
+
+
+def rigid_left_jacobian_inverse(x: Array) -> Rows:
+    """Return V^-1, 0; Q, V^-1: that of (7.8), and its derivative along the translation."""
+    r, t = x[:3], x[3:]
+    theta = np.sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
+    c = series.cotangent_defect(theta)
+    v = [-0.5 * ti for ti in t]
+    return _lower(_second_order(r, -0.5, c), _derivative(r, t, v, c, series.cotangent_defect_slope(theta)))
+
+
+def plane_exp(x: Array) -> Rows:
+    """Return the motion of the plane of a twist (angle, translation)."""
+    theta, lx, ly = x
+    c, s = np.cos(theta), np.sin(theta)
+    a, b = series.sinc(theta), theta * series.versinc(theta)
+    return c, 0.0 - s, a * lx - b * ly, s, c, b * lx + a * ly, _ZERO, _ZERO, _ONE
+
+
+def plane_log(T: Array) -> Rows:
+    """Return the principal logarithm of a motion of the plane."""
+    # Adding 0.0 turns -0.0 into 0.0, so that the half turn is pi and never -pi.
+    h = 0.5 * np.arctan2(T[3] - T[1] + 0.0, T[0] + T[4])
+    a = np.cos(h) / series.sinc(h)  # (theta/2) cot(theta/2)
+    return 2.0 * h, a * T[2] + h * T[5], a * T[5] - h * T[2]
+
+
+def quaternion(R: Rows | Array) -> Rows:
     """Return the unit quaternion of R, with w >= 0."""
     w, x, y, z = shepperd(R)
     f = 1.0 / np.sqrt(w * w + x * x + y * y + z * z)
     return f * w, f * x, f * y, f * z
 
 
-def product(q: Array, p: Array) -> Rows:
+def product(q: Rows | Array, p: Rows | Array) -> Rows:
     """Return Hamilton's product q p."""
     a, b, c, d = q
     w, x, y, z = p
@@ -133,7 +233,7 @@ def quaternion_exp(x: Array) -> Rows:
     return np.cos(theta), a * x, a * y, a * z
 
 
-def quaternion_log(q: Array) -> Rows:
+def quaternion_log(q: Rows | Array) -> Rows:
     """Return the principal logarithm of a unit quaternion; (pi, 0, 0) at -1, where every axis serves."""
     w, x, y, z = q
     s = np.sqrt(x * x + y * y + z * z)
@@ -142,7 +242,7 @@ def quaternion_log(q: Array) -> Rows:
     return np.where(opposite, np.pi, f * x), f * y, f * z
 
 
-def space_defect(R: Array) -> Rows:
+def space_defect(R: Vector) -> Rows:
     """Measure how far the columns of R are from |a| = |b| = 1, a . b = 0, c = a x b: R^T R and det in one."""
     ax, bx, cx, ay, by, cy, az, bz, cz = R
     worst = np.abs(ax * ax + ay * ay + az * az - 1.0)
@@ -157,7 +257,28 @@ def space_defect(R: Array) -> Rows:
     return (worst,)
 
 
-def plane_defect(R: Array) -> Rows:
+def plane_defect(R: Vector) -> Rows:
     """Measure how far the columns (a, c), (b, d) of R are from |(a, c)| = 1, d = a, b = -c."""
     a, b, c, d = R
     return (np.maximum(np.abs(a * a + c * c - 1.0), np.maximum(np.abs(a - d), np.abs(b + c))),)
+
+
+def _and_the_rest(worst: Array, d: Array, bottom: Array, unit: float) -> Rows:
+    """Return the largest of a defect, that of a bottom row from 0 ... 0 1, and a translation in a unit."""
+    for row in (*bottom[:-1], bottom[-1] - 1.0):
+        np.maximum(worst, np.abs(row), out=worst)
+    for row in d:
+        np.maximum(worst, np.abs(unit * row), out=worst)
+    return (worst,)
+
+
+def space_rigid_defect(T: Array, unit: float) -> Rows:
+    """Measure the rotation part's defect, the bottom row's, and the translation in a very long unit."""
+    (worst,) = space_defect((*T[0:3], *T[4:7], *T[8:11]))
+    return _and_the_rest(worst, T[3:12:4], T[12:], unit)
+
+
+def plane_rigid_defect(T: Array, unit: float) -> Rows:
+    """Measure the same in the plane."""
+    (worst,) = plane_defect((*T[0:2], *T[3:5]))
+    return _and_the_rest(worst, T[2:6:3], T[6:], unit)

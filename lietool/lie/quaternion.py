@@ -4,6 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lietool.lie import blocks, checks, kernels
+from lietool.lie.quaternion_complex import from_complex_matrix as from_complex_matrix
+from lietool.lie.quaternion_complex import to_complex_matrix as to_complex_matrix
 from lietool.lie.slerp import nlerp as nlerp
 from lietool.lie.slerp import slerp as slerp
 
@@ -71,7 +73,7 @@ def conjugate(q: ArrayLike) -> Array:
 def dot(q: ArrayLike, p: ArrayLike) -> Array:
     """Return the inner product of R^4, the real part of p q^-1 for unit quaternions.
 
-    Book: (2.32)
+    Book: (2.32) for its cosine
 
     Parameters
     ----------

@@ -28,6 +28,14 @@ _DEFECT = [(-1.0) ** k / factorial(2 * k + 3) for k in range(12)]
 _LEVER_SWITCH = 1.0
 _LEVER = [(-1.0) ** k * (2 * k + 2) / factorial(2 * k + 3) for k in range(10)]
 
+# The slope of (t - sin t) / t^3; beyond the switch its subtraction keeps all but two bits.
+_DEFECT_SLOPE_SWITCH = 4.0
+_DEFECT_SLOPE = [(-1.0) ** (k + 1) * (2 * k + 2) / factorial(2 * k + 5) for k in range(20)]
+
+# ((t/4) sin t + t^2/4 - 1 + cos t) / t^6, an entire function; beyond the switch two bits are lost.
+_COTANGENT_SLOPE_SWITCH = 3.5
+_COTANGENT_SLOPE = [(-1.0) ** k * (k + 1) / (2 * factorial(2 * k + 6)) for k in range(16)]
+
 
 def _polynomial(coefficients: list[float], x: NDArray[np.float64]) -> NDArray[np.float64]:
     """Evaluate sum c_k x^k by Horner's rule."""
@@ -124,6 +132,113 @@ def cotangent_defect(t: ArrayLike) -> NDArray[np.float64]:
         h < _LEVER_SWITCH,
         _polynomial(_LEVER, near * near) / (4.0 * sinc(near)),
         (sine - far * np.cos(far)) / (4.0 * far * far * sine),
+    )
+
+
+def sinc_slope(t: ArrayLike) -> NDArray[np.float64]:
+    """Return (sin t - t cos t) / t^3, and 1/3 at 0: the derivative of `sinc` is -t times this.
+
+    Book: 2.8, the exponential of dual quaternions
+
+    Parameters
+    ----------
+    t : (...), radians
+        Any angle.
+
+    Returns
+    -------
+    value : (...)
+    """
+    t = np.abs(np.asarray(t, dtype=np.float64))
+    near = np.minimum(t, _LEVER_SWITCH)
+    far = np.maximum(t, _LEVER_SWITCH)
+    return np.where(
+        t < _LEVER_SWITCH,
+        _polynomial(_LEVER, near * near),
+        (np.sin(far) - far * np.cos(far)) / (far * far * far),
+    )
+
+
+def versinc_slope(t: ArrayLike) -> NDArray[np.float64]:
+    """Divide the derivative of `versinc` by the angle: (t sin t - 2 (1 - cos t)) / t^4, and -1/12 at 0.
+
+    With h = t/2 it is -(1/4) (sin h / h) (sin h - h cos h) / h^3.  The left
+    Jacobian of SE(3) holds the derivative of that of SO(3), and this in it.
+
+    Book: (7.5), (A.10)
+
+    Parameters
+    ----------
+    t : (...), radians
+        Any angle.
+
+    Returns
+    -------
+    value : (...)
+    """
+    h = 0.5 * np.abs(np.asarray(t, dtype=np.float64))
+    near = np.minimum(h, _LEVER_SWITCH)
+    far = np.maximum(h, _LEVER_SWITCH)
+    lever = np.where(
+        h < _LEVER_SWITCH,
+        _polynomial(_LEVER, near * near),
+        (np.sin(far) - far * np.cos(far)) / (far * far * far),
+    )
+    return -0.25 * sinc(h) * lever
+
+
+def sine_defect_slope(t: ArrayLike) -> NDArray[np.float64]:
+    """Divide the derivative of `sine_defect` by the angle, and return -1/60 at 0.
+
+    It is (1 - cos t) / t^4 - 3 (t - sin t) / t^5.
+
+    Book: (7.5), (A.10)
+
+    Parameters
+    ----------
+    t : (...), radians
+        Any angle.
+
+    Returns
+    -------
+    value : (...)
+    """
+    t = np.abs(np.asarray(t, dtype=np.float64))
+    near = np.minimum(t, _DEFECT_SLOPE_SWITCH)
+    far = np.maximum(t, _DEFECT_SLOPE_SWITCH)
+    return np.where(
+        t < _DEFECT_SLOPE_SWITCH,
+        _polynomial(_DEFECT_SLOPE, near * near),
+        (versinc(far) - 3.0 * sine_defect(far)) / (far * far),
+    )
+
+
+def cotangent_defect_slope(t: ArrayLike) -> NDArray[np.float64]:
+    """Divide the derivative of `cotangent_defect` by the angle, and return 1/360 at 0.
+
+    It is ((t/4) sin t + t^2/4 - 1 + cos t) / (t^4 sin^2(t/2)).
+
+    Book: (7.8), (A.11)
+
+    Parameters
+    ----------
+    t : (...), radians
+        Any angle except the poles 2 pi n, n not 0.
+
+    Returns
+    -------
+    value : (...)
+    """
+    t = np.abs(np.asarray(t, dtype=np.float64))
+    near = np.minimum(t, _COTANGENT_SLOPE_SWITCH)
+    far = np.maximum(t, _COTANGENT_SLOPE_SWITCH)
+    half = sinc(0.5 * near)
+    square = far * far
+    sine = np.sin(0.5 * far)
+    return np.where(
+        t < _COTANGENT_SLOPE_SWITCH,
+        4.0 * _polynomial(_COTANGENT_SLOPE, near * near) / (half * half),
+        (0.25 * (far * np.sin(far) + square) - 2.0 * sine * sine) / (square * square * sine * sine),
     )
 
 

@@ -9,6 +9,8 @@ import click
 T = TypeVar("T")
 
 _STYLES = {"equal": "green", "passes": "green", "golden": "green", "not compared": "dim"}
+_STYLES |= {"proved": "green", "law": "green", "implemented": "yellow", "open": "dim"}
+_STYLES |= {"holds": "green", "": "dim"}
 
 
 def show(heads: Sequence[str], rows: Sequence[Sequence[str]], verdict: int | None = None) -> None:

@@ -1,4 +1,4 @@
-"""Measure how long starting and drawing take, from outside, in whole processes."""
+"""Measure accuracy, speed, the tables of the papers, and how long starting and drawing take."""
 
 import json
 import os
@@ -13,7 +13,7 @@ from typing import Any
 
 import click
 
-from lietool.verbs import _table
+from lietool.verbs import _bench_accuracy, _bench_speed, _bench_tables, _table
 
 # What the project promises; nothing fails where a machine is slower.
 HELP_FACTOR, COLD_SECONDS, PLATE_SECONDS, MEMORY_FACTOR = 1.3, 0.6, 0.4, 1.05
@@ -22,7 +22,11 @@ COLD = ("slerp", "--size", "1200x900")
 
 @click.group()
 def command() -> None:
-    """Measure how long starting and drawing take."""
+    """Measure accuracy, speed, the tables of the papers, and how long starting and drawing take."""
+
+
+for _subcommand in (_bench_accuracy.accuracy, _bench_speed.speed, _bench_tables.table1, _bench_tables.table2):
+    command.add_command(_subcommand)
 
 
 @command.command()

@@ -36,6 +36,34 @@ def test_matrices_multiply_as_quaternions_do():
     np.testing.assert_allclose(np.linalg.det(L(q)), quaternion.norm(q) ** 4)
 
 
+@pytest.mark.equation("B 2.37")
+def test_complex_matrices_multiply_as_quaternions_do():
+    """(2.37): q = z + w j, (z -w; w_bar z_bar), both ways; |q|^2 is the determinant."""
+    q, p = np.random.default_rng(21).normal(size=(2, 30, 4))
+    M = quaternion.to_complex_matrix
+    z, w = q[:, 0] + 1j * q[:, 1], q[:, 2] + 1j * q[:, 3]
+    printed = np.stack([z, -w, w.conj(), z.conj()], axis=-1).reshape(30, 2, 2)
+    np.testing.assert_array_equal(M(q), printed)
+    np.testing.assert_allclose(M(quaternion.multiply(q, p)), M(q) @ M(p), atol=1e-14)
+    np.testing.assert_array_equal(M(quaternion.conjugate(q)), np.conj(np.swapaxes(M(q), -1, -2)))
+    np.testing.assert_allclose(np.linalg.det(M(q)), quaternion.norm(q) ** 2)
+    unit = M(quaternion.normalize(q))
+    np.testing.assert_allclose(unit @ np.conj(np.swapaxes(unit, -1, -2)), np.eye(2) + 0 * unit, atol=1e-15)
+    np.testing.assert_array_equal(quaternion.from_complex_matrix(M(q)), q)
+    np.testing.assert_allclose(np.linalg.inv(M(q)), M(quaternion.inverse(q)), rtol=1e-13)
+    i, j, k = IJK
+    np.testing.assert_array_equal(M(i) @ M(j), M(k))
+
+
+def test_complex_matrix_of_another_form_is_refused():
+    M = quaternion.to_complex_matrix(np.ones((2, 3, 4)))
+    M[1, 2, 0, 0] += 1e-3
+    with pytest.raises(
+        ValueError, match=r"^quaternion\.from_complex_matrix: M must be of the form .*\(1, 2\)"
+    ):
+        quaternion.from_complex_matrix(M)
+
+
 def test_conjugate_norm_and_inverse():
     q, p = np.random.default_rng(2).normal(size=(2, 30, 4))
     times, norm = quaternion.multiply, quaternion.norm
