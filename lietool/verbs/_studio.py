@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+import lietool
 from lietool import figure as figure_
 from lietool import paths
 from lietool.figure import Figure, Plate
@@ -207,7 +208,7 @@ def provenance(item: Item, info: Mapping[str, Any], reason: str) -> dict[str, st
     dict
         Keywords and texts.
     """
-    versions = {name: metadata.version(name) for name in ("moderngl", "numpy", "matplotlib", "lietool")}
+    versions = {name: metadata.version(name) for name in ("moderngl", "numpy", "matplotlib")}
     return {
         "plate": item.id,
         "command": item.command,
@@ -220,6 +221,8 @@ def provenance(item: Item, info: Mapping[str, Any], reason: str) -> dict[str, st
         "mesa": str(info.get("mesa") or "unknown"),
         "llvm": str(info.get("llvm") or "unknown"),
         **versions,
+        # Not from the metadata, which an editable install keeps from the day it was made.
+        "lietool": lietool.__version__,
     }
 
 
