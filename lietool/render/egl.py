@@ -169,7 +169,13 @@ def load(software: bool) -> Loader:
 
 def _first(library: Library, software: bool) -> Loader:
     failures: list[str] = []
-    for device in [*library.devices(software), *([None] if software else [])]:
+    devices: list[int | None] = []
+    try:
+        devices += library.devices(software)
+    except OSError as error:
+        # An EGL that cannot list devices may still have a display on none.
+        failures.append(str(error))
+    for device in [*devices, *([None] if software else [])]:
         forced = {} if device else {name: value for name, value in _FORCED.items() if name not in os.environ}
         try:
             with mesa.environment(forced):

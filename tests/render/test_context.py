@@ -132,6 +132,20 @@ class TestNothingToRenderWith:
         with pytest.raises(OSError, match=r"libEGL.so.1"):
             egl.Library([], no_library)
 
+    def test_an_egl_that_cannot_list_devices_is_asked_for_a_display_on_none(self, monkeypatch):
+        def devices(self: egl.Library, software: bool):
+            raise OSError("libEGL has no eglQueryDevicesEXT")
+
+        def no_display(self: egl.Library, device: int | None):
+            raise OSError(f"no display on {device}")
+
+        monkeypatch.setattr(egl.Library, "devices", devices)
+        monkeypatch.setattr(egl.Library, "display", no_display)
+        library = object.__new__(egl.Library)
+        library.call = None  # type: ignore[assignment]
+        with pytest.raises(OSError, match=r"^libEGL has no eglQueryDevicesEXT; no display on None$"):
+            egl._first(library, software=True)
+
     @pytest.mark.parametrize(
         ("fields", "first"),
         [
