@@ -8,6 +8,9 @@ homogeneous matrix, 4 x 4 or 3 x 3.  The texts have two different maps:
     phi_so(x, l, Y):  p -> exp(x) exp(Y) p + l       Kaji and Ochiai
     phi_se(x, l, Y):  p -> exp(x, l) (exp(Y) p)      the book; exp of se(n)
 
+where exp(x) is the texts' exp(X), X = so3.hat(x).  Kaji and Ochiai list l first
+and then X12, X13, X23, which are -x3, x2, -x1.
+
 `psi_so` and `psi_se` go back, by the principal rotation; `psi_so_near` and
 `psi_se_near` by the one nearest to a reference.  No inverse is continuous on
 all of Aff+: along R_x(2 pi t) it jumps, or ends at 2 pi, not 0.
@@ -198,6 +201,9 @@ def psi_so_near(A: ArrayLike, reference: ArrayLike, *, check: bool = True) -> ND
 
 def psi_se_near(A: ArrayLike, reference: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
     """Return the parameters under `phi_se` whose rotation is the nearest to that of other parameters.
+
+    As the rotation nears whole turns, the translation part grows without bound
+    unless the translation is along the axis: (7.8) has a pole there.
 
     Book: (7.2), (7.8)
     Kaji-Ochiai: Algorithm 1, by `so3.log_near`

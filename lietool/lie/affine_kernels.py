@@ -48,6 +48,10 @@ def phi_se(p: Array) -> Rows:
 def psi_parts(A: Array) -> Rows:
     """Return the rotation R (9) and the upper triangle of Y = log S (6), nan where det A <= 0.
 
+    With A = U diag(d) V^T the texts' S = sqrt(A^T A), (7.2), is V diag(d) V^T:
+    so R = A S^-1 = U V^T and log S = V diag(log d) V^T, without forming A^T A,
+    which squares the condition number.
+
     The largest of log d is added last: see `sym_kernels.relative_log`.
     """
     M, k = jacobi.scaled((*A[0:3], *A[4:7], *A[8:11]))
@@ -66,7 +70,7 @@ def psi_so(A: Array) -> Rows:
 
 
 def psi_se(A: Array) -> Rows:
-    """Return x, l, Y with phi_se(x, l, Y) = A."""
+    """Return x, l, Y with phi_se(x, l, Y) = A; l by (7.8), as S leaves the translation d of A alone."""
     x, y, z, *rest = psi_so(A)
     return x, y, z, *_apply(kernels.left_jacobian_inverse(np.stack((x, y, z))), rest[:3]), *rest[3:]
 

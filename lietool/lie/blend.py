@@ -92,9 +92,9 @@ def linear(weights: ArrayLike, A: ArrayLike, *, check: bool = True) -> Array:
 def polar_quaternion(weights: ArrayLike, A: ArrayLike, *, check: bool = True) -> Array:
     """Blend A = R S with the rotations on the sphere of quaternions, stretch and translation linearly.
 
-    For two it is slerp (Shoemake and Duff 1992).  For more it is one step of
-    the spherical average (Buss and Fillmore 2001) from the normalised sum.
-    The signs are aligned to that of the first, so no turn exceeds a half turn.
+    For two it is slerp (Shoemake and Duff 1992).  For more it is one step of the
+    spherical average (Buss and Fillmore 2001) from the normalised sum, by |w_i|
+    lest negative weights cancel; signs as the first's: no turn above a half turn.
 
     Book: (2.32), (3.11), 5.1
     Kaji-Ochiai: 2, 6

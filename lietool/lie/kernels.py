@@ -17,7 +17,11 @@ _ZERO, _ONE = np.zeros(()), np.ones(())
 
 
 def matrix(q: Rows) -> Rows:
-    """Return the matrix of p -> q p q^-1, (2.28), for any q but 0."""
+    """Return the matrix of p -> q p q^-1, (2.28), for any q but 0.
+
+    For the unit q of (2.26) these are the entries of (A.4) by half angles:
+    (1 - cos theta) u_i u_j = 2 q_i q_j and (sin theta) u_i = 2 w q_i.
+    """
     w, x, y, z = q
     s = 2.0 / (w * w + x * x + y * y + z * z)
     sx, sy, sz = s * x, s * y, s * z
@@ -42,7 +46,7 @@ def matrix(q: Rows) -> Rows:
 def rotation_exp(x: Array) -> Rows:
     """Return the rotation about x by |x|, Rodrigues' formula (7.4).
 
-    It goes by way of the quaternion cos(theta/2) + sin(theta/2) u, whose norm
+    It goes by way of the quaternion cos(theta/2) + sin(theta/2) u, (2.26), whose norm
     is divided out; so the rounding of |x| and of its sine and cosine cannot
     stretch the result, which summing I + a X + b X^2 lets it do near pi.
     """
@@ -66,13 +70,13 @@ def _second_order(vector: Array, a: Array | float, b: Array) -> Rows:
 
 
 def left_jacobian(x: Array) -> Rows:
-    """Return the matrix of (7.5)."""
+    """Return the matrix of (7.5), Y of (A.10)."""
     theta = np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
     return _second_order(x, series.versinc(theta), series.sine_defect(theta))
 
 
 def left_jacobian_inverse(x: Array) -> Rows:
-    """Return the matrix of (7.8)."""
+    """Return the matrix of (7.8), by (1 + cos theta) / sin theta = cot(theta/2)."""
     theta = np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
     return _second_order(x, -0.5, series.cotangent_defect(theta))
 
@@ -80,7 +84,8 @@ def left_jacobian_inverse(x: Array) -> Rows:
 def shepperd(R: Rows | Array) -> Rows:
     """Return a positive multiple of the quaternion of R, with w >= 0.
 
-    The ten products 4 q_i q_j are linear in R.  They form a symmetric matrix
+    The ten products 4 q_i q_j are linear in R, by (2.28): 4 w^2 = 1 + tr R, and
+    4 w (x, y, z) is the vector of R - R^T.  They form a symmetric matrix
     all of whose columns are multiples of q; the one with the largest diagonal
     entry, at least 1, loses nothing to rounding (Shepperd 1978).  At w = 0 the
     largest component is positive.
@@ -103,7 +108,11 @@ def shepperd(R: Rows | Array) -> Rows:
 
 
 def rotation_log(R: Array) -> Rows:
-    """Return the principal logarithm of R."""
+    """Return the principal logarithm of R, theta u.
+
+    The direction of (7.7) and the angle of (7.6), both from the quaternion:
+    u sin(theta/2) is its vector, and theta/2 the angle of its two parts.
+    """
     w, x, y, z = shepperd(R)
     # x, y, z are sin(theta/2) u and w is cos(theta/2), both to the same scale.
     f = 2.0 * series.angle_over_sine(np.sqrt(x * x + y * y + z * z), w)
@@ -133,7 +142,7 @@ def rigid_exp(x: Array) -> Rows:
 
 
 def rigid_log(T: Array) -> Rows:
-    """Return the principal logarithm of a rigid transformation, (7.8) in the form that holds at pi."""
+    """Return the principal logarithm of a rigid motion, (7.8) with cot(theta/2), which holds at pi."""
     w, *v = shepperd((*T[0:3], *T[4:7], *T[8:11]))
     d = T[3], T[7], T[11]
     s = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
@@ -191,7 +200,7 @@ def rigid_left_jacobian_inverse(x: Array) -> Rows:
 
 
 def plane_exp(x: Array) -> Rows:
-    """Return the motion of the plane of a twist (angle, translation)."""
+    """Return the motion of the plane of a twist: (7.5) with X = theta J, X^2 = -theta^2 I."""
     theta, lx, ly = x
     c, s = np.cos(theta), np.sin(theta)
     a, b = series.sinc(theta), theta * series.versinc(theta)
@@ -199,7 +208,7 @@ def plane_exp(x: Array) -> Rows:
 
 
 def plane_log(T: Array) -> Rows:
-    """Return the principal logarithm of a motion of the plane."""
+    """Return the principal logarithm of a motion of the plane: (7.8) with X = theta J, X^2 = -theta^2 I."""
     # Adding 0.0 turns -0.0 into 0.0, so that the half turn is pi and never -pi.
     h = 0.5 * np.arctan2(T[3] - T[1] + 0.0, T[0] + T[4])
     a = np.cos(h) / series.sinc(h)  # (theta/2) cot(theta/2)

@@ -110,8 +110,8 @@ def sine_defect(t: ArrayLike) -> NDArray[np.float64]:
 def cotangent_defect(t: ArrayLike) -> NDArray[np.float64]:
     """Return (1 - (t/2) cot(t/2)) / t^2, and 1/12 at 0: the second coefficient of the inverse left Jacobian.
 
-    With h = t/2 it is (sin h - h cos h) / (4 h^2 sin h).  The printed (7.8)
-    is 0/0 at t = pi; this form is not.
+    It is the last coefficient of (7.8), as (1 + cos t) / sin t = cot(t/2); what
+    is printed is 0/0 at t = pi.  With h = t/2: (sin h - h cos h) / (4 h^2 sin h).
 
     Book: (7.8)
 

@@ -23,7 +23,8 @@ def _arguments(where: str, q0: ArrayLike, q1: ArrayLike, t: ArrayLike, check: bo
 def slerp(q0: ArrayLike, q1: ArrayLike, t: ArrayLike, *, check: bool = True) -> Array:
     """Interpolate along the great arc from q0 to q1 at constant speed.
 
-    The arc is the one of length theta <= pi on the sphere of quaternions.  If
+    The arc is the one of length theta <= pi on the sphere of quaternions, half
+    the angle turned on the way from one rotation to the other.  If
     q0 . q1 < 0 it is not the shortest way between the two rotations; for that,
     pass -q1.  It is evaluated as cos(t theta) q0 + sin(t theta) n, n the unit
     tangent at q0 towards q1: the same as (2.32), whose division by sin(theta)

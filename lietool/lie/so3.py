@@ -147,6 +147,7 @@ def log_near(
     length = np.linalg.norm(reference, axis=-1, keepdims=True)
     identity = theta <= series.ROUNDED
     u = principal / np.where(theta > 0.0, theta, 1.0)
+    # All (theta + 2 pi k) u lie on one line: the nearest is nearest to the foot of the reference on it.
     k = _round((np.sum(u * reference, axis=-1, keepdims=True) - theta) / (2.0 * np.pi))
     n = _round(length / (2.0 * np.pi))
     turned = principal + 2.0 * np.pi * np.where(identity, 0.0, k) * u
@@ -244,7 +245,8 @@ def adjoint(R: ArrayLike) -> NDArray[np.float64]:
 def left_jacobian(x: ArrayLike, *, check: bool = True) -> NDArray[np.float64]:
     """Return the matrix from the rate of x to the angular velocity of exp(x), in fixed axes.
 
-    It is singular where |x| = 2 pi n, n >= 1, and it carries the translation part of se(3).
+    The text knows it as Y of (A.9), which carries the translation part of se(3);
+    not the symmetric Y of (7.1).  It is singular where |x| = 2 pi n, n >= 1.
 
     Book: (7.5), (A.9), (A.10)
 

@@ -25,7 +25,7 @@ _THREE_HALVES_BITS = float(np.sqrt(2.0))
 
 
 def _eigenvalues(Y: Rows) -> tuple[Array, Array, Array]:
-    """Return l2, l1 - l2 and l2 - l3 for the eigenvalues l1 >= l2 >= l3, by the trigonometric formula."""
+    """Return l2, l1 - l2 and l2 - l3 for eigenvalues l1 >= l2 >= l3, the roots of (M 3) by trigonometry."""
     xx, xy, xz, yy, yz, zz = Y
     mean = (xx + yy + zz) * (1.0 / 3.0)
     a, b, c = xx - mean, yy - mean, zz - mean
@@ -73,11 +73,12 @@ def _quotient(function: Callable[[Array], Array], x: Array) -> Array:
 
 
 def exp_space(Y: Rows) -> Rows:
-    """Return exp Y = e^l2 (I + b Z + c Z^2) with Z = Y - l2 I.
+    """Return exp Y = e^l2 (I + b Z + c Z^2) with Z = Y - l2 I, (K 6).
 
     With e(z) = (e^z - 1)/z, b + c x = e(x) at x = l1 - l2 and b - c y = e(-y)
-    at y = l2 - l3.  The rounding of c is that of e(x) divided by x + y, and
-    the square of Z is at most (x + y)^2: so it is harmless when x and y vanish.
+    at y = l2 - l3; x and -y are lambda'1 and lambda'3 of the text.  The rounding
+    of c is that of e(x) divided by x + y, and the square of Z is at most
+    (x + y)^2: so it is harmless when x and y vanish.
     """
     middle, x, y = _eigenvalues(Y)
     wide = x + y > _WIDEST
@@ -107,8 +108,9 @@ def _binary_scale(trace: Array, n: int) -> tuple[Array, Array]:
 def log_space(S: Rows) -> Rows:
     """Return log S = (log l2) I + b Z + c Z^2 with Z = S / l2 - I; nan where S is not positive definite.
 
-    With g(z) = log(1 + z)/z, b + c x = g(x) at x = l1/l2 - 1 and b - c w = g(-w)
-    at w = 1 - l3/l2.  A power of 2 and then I are subtracted first, exactly
+    (K 7) is the same for A^T A = S^2, halved, in powers of Z + I.  With
+    g(z) = log(1 + z)/z, b + c x = g(x) at x = l1/l2 - 1 and b - c w = g(-w) at
+    w = 1 - l3/l2.  A power of 2 is divided out and then I subtracted, exactly
     where S is near I: so what S - I holds is kept.
     """
     f, shift = _binary_scale(S[0] + S[3] + S[5], 3)

@@ -17,7 +17,7 @@ LOGARITHMS: list[Erratum] = []
     "B 2.34",
     printed="slerp(1, exp(theta u), t) = exp(t theta u)",
     true="the same, for 0 < theta < pi only",
-    why="slerp sees only the two ends, whose angle is never more than pi: it takes the short arc",
+    why="slerp sees only the two ends, at most pi apart: it takes the short arc",
     example="theta = 4 about z, t = 0.3",
 )
 def slerp_past_pi() -> Outcome:
@@ -158,8 +158,8 @@ def parity() -> Outcome:
     "B 4.6 (text)",
     printed="a motion with continuous velocity has a continuous logarithm",
     true="it has if its velocity does not vanish where it passes I",
-    why="at rest on I a motion forgets its axis and may leave about any other, without a kink",
-    example="Rx(2 pi s) resting at I, then Ry, in 400 steps each: largest step of R, and of its logarithm",
+    why="at rest on I a motion forgets its axis, and may leave about any other",
+    example="Rx(2 pi s) resting at I, then Ry: largest step of R, and of its logarithm",
 )
 def resting_at_the_identity() -> Outcome:
     t = np.linspace(0.0, 1.0, 401)
@@ -186,7 +186,7 @@ def _largest_step(x: Array) -> float:
     "B 7.1, M 1 (text)",
     printed="psi is a continuous inverse of phi",
     true="only locally: no continuous inverse exists on all of Aff+(3)",
-    why="along a full turn a continuous logarithm grows to 2 pi, yet the end is the beginning",
+    why="along a full turn a continuous logarithm grows to 2 pi, yet R is I again",
     example="Rx(2 pi t), followed from 0: the logarithm at t = 1, where R = I",
     also=("B 7.1", "M 1"),
 )
@@ -253,7 +253,7 @@ def half_turn() -> Outcome:
     "K Alg. 1, theta = 0",
     printed="theta (R - R^T) / (2 sin theta)",
     true="2 pi round(|X'| / 2 pi) X' / |X'|",
-    why="at R = I it is 0/0; every vector of length 2 pi n is a logarithm, and the nearest lies along X'",
+    why="at R = I it is 0/0; all of length 2 pi n are logarithms, the nearest along X'",
     example="R = I, X' = (0, 6, 1)",
 )
 def no_turn() -> Outcome:
@@ -270,8 +270,8 @@ def no_turn() -> Outcome:
     "K Alg. 1, closest",
     printed="turn on until |theta' - theta| <= pi, theta' = |X'|",
     true="(theta + 2 pi k) u with k = round((<u, X'> - theta) / 2 pi)",
-    why="what counts is X' along the axis u; its length is more than that, and it has no sign",
-    example="400 random rotations and references (seed 5): the share for which a nearer logarithm exists",
+    why="what counts is X' along the axis u; |X'| may be more, and has no sign",
+    example="share of 400 random cases (seed 5) that the loop misses: as claimed, as counted",
 )
 def closest() -> Outcome:
     rng = np.random.default_rng(5)
@@ -293,8 +293,8 @@ def closest() -> Outcome:
     "K 4.3, 5.3 (text)",
     printed="logarithms nearest to those of the neighbours recover large rotations",
     true="not beyond a full turn, but by luck: state the turns",
-    why="a continuous logarithm crosses |x| = 2 pi only where R = I exactly; beside it, it turns back",
-    example="Rx from 0 to 540 degrees, tilted by 6 degrees about y: the largest angle recovered, in degrees",
+    why="a logarithm that is continuous crosses |x| = 2 pi only where R = I exactly",
+    example="Ry(6 degrees) Rx(0 to 540 degrees): the largest angle, stated and recovered",
     also=("K 4.3", "K 5.3"),
 )
 def thorn() -> Outcome:
