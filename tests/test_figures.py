@@ -221,6 +221,13 @@ class TestGimbal:
         for axes, smallest in zip(shown["axes"], shown["smallest_singular_value"], strict=True):
             assert np.linalg.svd(axes, compute_uv=False)[-1] == pytest.approx(smallest, abs=1e-15)
 
+    def test_the_other_choice_of_signs_gives_the_same_rotations(self, plate):
+        shown = plate("GL2").numbers
+        about_z = shown["rotation_by_other_angles"]
+        cosine, sine = np.cos(shown["theta"]), np.sin(shown["theta"])
+        assert np.abs(about_z[:, 0, 0] - cosine).max() < 1e-14 > np.abs(about_z[:, 1, 0] - sine).max()
+        assert np.abs(about_z[:, 2, 2] - 1.0).max() < 1e-14
+
     def test_the_rotation_is_the_product_of_its_angles(self, plate):
         shown = plate("GL1").numbers
         for angles, R in zip(shown["angles"], shown["rotation"], strict=True):

@@ -170,8 +170,11 @@ def _curves(marked: float) -> Drawing:
     rows = np.stack([0.0 * second, second, 0.0 * second], axis=-1)
     smallest = {c: euler.singular_values(rows, c).min(axis=-1) for c in ("xyx", "xyz")}
     here = euler.from_matrix(so3.rotation("z", marked), "xyx")
-    records = [*_jump(theta, angles, marked, here), *_singular(second, smallest, marked)]
+    # The same rotations by the other choice of signs, with theta_2 below 0.
+    other = angles * (1.0, -1.0, 1.0) + (np.pi, 0.0, np.pi)
+    records = [*_jump(theta, angles, other, marked, here), *_singular(second, smallest, marked)]
     numbers = {"theta": theta, "angles": angles, "theta_2": second, "marked": here}
+    numbers["rotation_by_other_angles"] = euler.to_matrix(other, "xyx")
     numbers |= {f"smallest_singular_value_{c}": s for c, s in smallest.items()}
     return Drawing(scene.Picture((scene.View(tuple(records), Page()),)), numbers)
 
@@ -180,14 +183,17 @@ def _degree_ticks(step: int, last: int = 180) -> list[tuple[float, str]]:
     return [(d, rf"${d}^{{\circ}}$") for d in range(-last, last + 1, step)]
 
 
-def _jump(theta: np.ndarray, angles: np.ndarray, marked: float, here: np.ndarray) -> list[scene.Record]:
+def _jump(
+    theta: np.ndarray, angles: np.ndarray, other: np.ndarray, marked: float, here: np.ndarray
+) -> list[scene.Record]:
     axes = Axes((150.0, 470.0, 920.0, 310.0), (-180.0, 180.0), (-190.0, 190.0))
     title = rf"$R_x({NAMES[2]})\,R_y({NAMES[1]})\,R_x({NAMES[0]}) = R_z(\theta)$"
     records = axes.frame(_degree_ticks(90), _degree_ticks(90), r"$\theta$", title)
     x, y = np.rad2deg(theta), np.rad2deg(angles)
     middle = len(x) // 2
-    # The other solution on the left, which goes on smoothly through 0.
-    records.append(axes.curve([-180.0, 0.0], [-180.0, 0.0], style.AXIS_Y, style.EDGE, (8.0, 7.0)))
+    # On the left the other choice goes on smoothly from the right.
+    below = np.append(np.rad2deg(other[:middle, 1]), 0.0)
+    records.append(axes.curve(np.append(x[:middle], 0.0), below, style.AXIS_Y, style.EDGE, (8.0, 7.0)))
     for k, dash in ((1, None), (0, None), (2, (16.0, 7.0))):
         for half in (slice(0, middle), slice(middle, None)):
             ends = x[half], y[half, k]

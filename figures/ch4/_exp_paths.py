@@ -11,25 +11,27 @@ from lietool.render.marks import coordinate_axes
 from lietool.render.plot import Axes, number
 
 FULL = 2.0 * np.pi
+# A full turn about x and one about y: where the paths end.
+LAST = 2.0 * FULL
 
 
 def drawing(turn: float, aside: float) -> Drawing:
     """R_x up to a full turn, then R_y: as it is, and moved aside by a rotation about z."""
     # Closest together at full turns, where the path passes I: beside it the logarithm moves fastest.
-    turns, rest = np.divmod(np.linspace(0.0, 3.0, 361), 1.0)
+    turns, rest = np.divmod(np.linspace(0.0, LAST / FULL, 241), 1.0)
     steps = FULL * (turns + rest**2 * (3.0 - 2.0 * rest))
     through = _motion(steps)
     beside = so3.rotation("z", aside) @ through
     shown = max(int(np.searchsorted(steps, turn + 1e-9)), 1)
-    lifts = [so3.log_along(through, np.zeros(3)), so3.log_along(beside, np.array([0.0, 0.0, aside]))]
+    starts = (np.zeros(3), np.array([0.0, 0.0, aside]))
+    lifts = [so3.log_along(p[:shown], start) for p, start in zip((through, beside), starts, strict=True)]
+    lengths = np.array([np.linalg.norm(lift[-1]) for lift in lifts])
     x = np.linspace(0.0, 3.0 * FULL, 601)
     jacobian = so3.left_jacobian(np.stack([x, 0.0 * x, 0.0 * x], axis=-1))
     smallest = np.linalg.svd(jacobian, compute_uv=False).min(axis=-1)
     camera = Camera((1.0, 0.50, 0.42), (0.0, 0.0, 0.0), 3.1)
     views = [
-        scene.View(
-            tuple(_lift_view(lift[:shown] / FULL, camera, i)), camera, (600.0 * i, 318.0, 600.0, 500.0)
-        )
+        scene.View(tuple(_lift_view(lift / FULL, camera, i)), camera, (600.0 * i, 318.0, 600.0, 500.0))
         for i, lift in enumerate(lifts)
     ]
     titles = ("through the identity", "beside the identity")
@@ -37,13 +39,15 @@ def drawing(turn: float, aside: float) -> Drawing:
         scene.Label(text, (300.0 + 600.0 * i, 856.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
         for i, text in enumerate(titles)
     ]
-    page += _smallest(x, smallest, [float(np.linalg.norm(lift[shown - 1])) for lift in lifts])
-    steps_between = [np.linalg.norm(np.diff(lift, axis=0), axis=-1).max() for lift in lifts]
+    page += _smallest(x, smallest, lengths)
     numbers = {
-        "turn": steps,
+        "turn": steps[:shown],
         "lift_through": lifts[0],
         "lift_beside": lifts[1],
-        "largest_step": np.array(steps_between),
+        "lengths": lengths,
+        "largest_step": np.array(
+            [np.linalg.norm(np.diff(a, axis=0), axis=-1).max(initial=0.0) for a in lifts]
+        ),
         "length": x,
         "smallest_singular_value": smallest,
     }
@@ -87,7 +91,7 @@ def _jump_name(start: np.ndarray, end: np.ndarray) -> str:
     return rf"a jump of ${number(2.0 * np.linalg.norm(end - start))}\pi$"
 
 
-def _smallest(x: np.ndarray, values: np.ndarray, marked: list[float]) -> list[scene.Record]:
+def _smallest(x: np.ndarray, values: np.ndarray, marked: np.ndarray) -> list[scene.Record]:
     axes = Axes((150.0, 90.0, 900.0, 180.0), (0.0, 3.0 * FULL), (0.0, 1.1))
     ticks = [(FULL * n, rf"${2 * n}\pi$" if n else "$0$") for n in range(4)]
     records = axes.frame(

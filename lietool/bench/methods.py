@@ -1,4 +1,4 @@
-"""What the tables of Kaji and Ochiai compare: exp and log of sym(3), phi and psi of Aff+(3); one line each."""
+"""What the tables of Kaji and Ochiai compare: exp and log of sym(3), phi and psi of Aff+(3), each a line."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

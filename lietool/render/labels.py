@@ -121,7 +121,7 @@ class Store:
                 return glyphs
         if self.strict:
             raise MissingLabelError(text, pixels)
-        kept = cache.folder("labels")
+        kept = _kept()
         glyphs = _read(kept / f"{name}.png") if kept else None
         if glyphs is None:
             glyphs = Glyphs(*rasterise(text, pixels), name)
@@ -136,6 +136,13 @@ class Store:
     def fresh(self) -> dict[str, bytes]:
         """File names and contents of the labels that were asked for and that the folders do not hold."""
         return {name: encode(glyphs, text) for name, (glyphs, text) in self._new.items()}
+
+
+def _kept() -> Path | None:
+    """The cache of the matplotlib that is installed: another one may draw the same text otherwise."""
+    from importlib import metadata
+
+    return cache.folder(f"labels-{metadata.version('matplotlib')}")
 
 
 @lru_cache(maxsize=512)

@@ -58,7 +58,7 @@ def _accept(item: _studio.Item, studio: _studio.Studio, reason: str) -> str:
                     painted.numbers,
                     labels=painted.fresh,
                     label_keys=painted.label_keys,
-                    provenance=_studio.provenance(item, studio.info, reason),
+                    provenance=_studio.provenance(item, studio.info) | {"reason": reason},
                 )
     except ValueError as error:
         raise _studio.Stop(2, str(error)) from None

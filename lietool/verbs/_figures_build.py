@@ -53,7 +53,7 @@ def run(
         start = time.perf_counter()
         painted = studio.paint(item, size=size, draft=draft)
         path = folder / f"{item.id}.png"
-        made = {"plate": item.id, "command": item.command, "parameters": item.recorded}
+        made = _studio.provenance(item, studio.info)
         with _studio.writing(str(path)):
             atomic.write_bytes(path, export.png(painted.image, made))
         seconds = time.perf_counter() - start

@@ -191,8 +191,8 @@ def current() -> Studio:
     return click.get_current_context().find_object(Studio) or Studio()
 
 
-def provenance(item: Item, info: Mapping[str, Any], reason: str) -> dict[str, str]:
-    """Collect what a golden remembers of how it was made.
+def provenance(item: Item, info: Mapping[str, Any]) -> dict[str, str]:
+    """Collect what the picture of a plate remembers of how it was made.
 
     Parameters
     ----------
@@ -200,8 +200,6 @@ def provenance(item: Item, info: Mapping[str, Any], reason: str) -> dict[str, st
         The plate.
     info : Mapping[str, object]
         What renders, as the context tells it.
-    reason : str
-        Why it is accepted.
 
     Returns
     -------
@@ -213,7 +211,6 @@ def provenance(item: Item, info: Mapping[str, Any], reason: str) -> dict[str, st
         "plate": item.id,
         "command": item.command,
         "parameters": item.recorded,
-        "reason": reason,
         "date": _date(),
         "commit": _commit(item.declared.file.parent),
         "renderer": str(info["renderer"]),
