@@ -1,6 +1,7 @@
 """Text: keys that stay, stores that are looked through, and where a label comes to lie."""
 
 import os
+from importlib import metadata
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +33,7 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A user's cache that is empty."""
     monkeypatch.setenv("LIETOOL_CACHE_DIR", str(tmp_path / "cache"))
-    return tmp_path / "cache" / "labels"
+    return tmp_path / "cache" / f"labels-{metadata.version('matplotlib')}"
 
 
 def filled(folder: Path, *texts: str, size: float = 24.0) -> labels.Store:
