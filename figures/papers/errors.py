@@ -15,7 +15,7 @@ CONDITIONS = tuple(range(1, 12, 2))
 EDGES = (-13, -11, -9, -7, -5)
 """Of the decades of errors; rounding on another processor moves no error over one of them."""
 
-_FEW = 40
+_FEW = 6
 """Matrices for what takes them one after the other."""
 _COLORS = {"ours": style.RIGHT, "Newton": style.GREYS[0], "Higham": style.GREYS[0]}
 _COLORS |= {"diagonal": style.GREYS[1], "as printed": style.WRONG}
@@ -178,13 +178,12 @@ def _curve(panel: int, name: str, errors: np.ndarray, track: float) -> list[scen
     radius = 10.0 if name == "ours" else 8.0
     dots = scene.Points([(x, y, 0.0) for x, y in places], color, radius, shaded=False)
     text_color = _TEXTS.get(name, style.INK)
-    lost = levels.index(len(EDGES)) if len(EDGES) in levels else None
-    if lost is None:
-        x, y = places[-1]
-        label = _label(name, _STARTS[panel] + _WIDTH + 12.0, y - 10.0, "ln", text_color)
+    y = places[-1][1]
+    right = _STARTS[panel] + _WIDTH
+    if levels[-1] == len(EDGES):
+        label = _label(name, right, y + 20.0, "rn", text_color)
     else:
-        x, y = places[lost]
-        label = _label(name, x - 8.0, y + 20.0, "ln", text_color)
+        label = _label(name, right + 12.0, y - 10.0, "ln", text_color)
     return [_line(places, color, style.CURVE if name == "ours" else style.EDGE), dots, label]
 
 
