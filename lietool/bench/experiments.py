@@ -111,8 +111,8 @@ def powers(method: Method) -> Finding:
     return Finding(off < _EXACT, off, "difference")
 
 
-TURN = np.deg2rad(860.0)
-"""Two turns and 140 degrees: no quaternion tells them from 140 degrees."""
+TURN = 860.0
+"""Degrees: two turns and 140, which no quaternion tells from 140."""
 
 
 def _stretched(theta: Array) -> Array:
@@ -123,26 +123,32 @@ def _stretched(theta: Array) -> Array:
     return A
 
 
-def large_rotation(method: Method) -> Finding:
-    """Follow a stretched body through 860 degrees, then go straight from the first parameters to the last.
+def large_rotation(method: Method, degrees: float = TURN) -> Finding:
+    """Follow a stretched body through a large turn, then go straight from the first parameters to the last.
 
     The turn on that straight way is what the parameters know of it.  Where the
     parameters cannot follow, the finding is the turn at which they are lost.
+    (The body does not travel: a motion that does has no twist in se(3) at a
+    whole turn, and a continuous one goes to infinity there.)
     """
-    # At no step a whole number of turns: se(3) has no such twist, but for motions without translation.
-    theta = np.linspace(0.0, TURN, 171)
+    # At no step of the turn that is looked at unless told otherwise a whole number of turns.
+    theta = np.linspace(0.0, np.deg2rad(degrees), 2 + int(abs(degrees) // 17.0))
     path = _stretched(theta)
     first = reference = method.psi(path[0])
     for angle, A in zip(theta, path, strict=True):
-        reference = method.near(A, reference)
-        if _difference(method.phi(reference), A) > _EXACT:
+        try:
+            reference = method.near(A, reference)
+            lost = _difference(method.phi(reference), A) > _EXACT
+        except ValueError:
+            lost = True
+        if lost:
             return Finding(False, float(np.rint(np.rad2deg(angle))), "degrees, then lost")
     # An odd number of steps: half-way between opposite rotations is 0, which has no rotation.
-    way = first + np.linspace(0.0, 1.0, 400)[:, None] * (reference - first)
+    way = first + np.linspace(0.0, 1.0, 200)[:, None] * (reference - first)
     R = polar.rotation(method.phi(way)[:, :3, :3])
     steps = so3.log(np.swapaxes(R[:-1], -1, -2) @ R[1:])
-    known = float(np.sum(np.linalg.norm(steps, axis=-1)))
-    return Finding(abs(known - TURN) < 1e-6, float(np.rint(np.rad2deg(known))), "degrees of 860")
+    known = float(np.rad2deg(np.sum(np.linalg.norm(steps, axis=-1))))
+    return Finding(abs(known - abs(degrees)) < 1e-4, float(np.rint(known)), f"degrees of {degrees:g}")
 
 
 def rigid(method: Method) -> Finding:

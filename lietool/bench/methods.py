@@ -1,4 +1,4 @@
-"""What the tables of Kaji and Ochiai compare: exp and log of sym(3), phi and psi of Aff+(3), each a line."""
+"""What the two tables of Kaji and Ochiai compare: exp and log of sym(3), phi and psi of Aff+(3)."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

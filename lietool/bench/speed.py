@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lietool import lie
 from lietool.bench import tables
-from lietool.lie import aff, dual_quaternion, se2, se3, so2, so3, sym
+from lietool.lie import dual_quaternion, se2, se3, so2, so3, sym
 
 Array = NDArray[np.float64]
 
@@ -56,8 +56,10 @@ def _rigid(x: Array) -> Array:
 
 
 def _affine(x: Array) -> Array:
-    x[..., -1, :] = 0.0
-    return aff.exp(0.3 * x)
+    # So near to I that every determinant is positive and every logarithm is real.
+    A = np.eye(x.shape[-1]) + 0.1 * np.tanh(x)
+    A[..., -1, :] = np.eye(x.shape[-1])[-1]
+    return A
 
 
 def _positive(x: Array) -> Array:
@@ -87,6 +89,7 @@ _DOMAINS: dict[str, Callable[[Array], Array]] = {
     "affine": _affine,
     "Aff+": _affine,
     "affine exponential": _affine,
+    "infinitesimal affine": lambda x: _affine(x) - np.eye(x.shape[-1]),
     "unit vector": _unit,
     "unit quaternion": _unit,
     "unit dual quaternion": lambda x: dual_quaternion.normalize(x),

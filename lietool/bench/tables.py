@@ -67,20 +67,25 @@ def squared_error(X: Array, again: Array) -> float:
     return float(np.max(np.sum((X - again) ** 2, axis=(-2, -1))))
 
 
+def round_trip(
+    X: Array, there: Callable[[Array], Array], back: Callable[[Array], Array]
+) -> tuple[float, int]:
+    """Return the largest squared error of back(there(X)), and how many X have no parameters."""
+    again = back(there(X))
+    found = np.sum((X - again) ** 2, axis=(-2, -1)) < 1e-6 * np.sum(X * X, axis=(-2, -1))
+    return squared_error(X[found], again[found]), int(np.sum(~found))
+
+
 def _line(
     name: str, X: Array, there: Callable[[Array], Array], back: Callable[[Array], Array], repeats: int
 ) -> Line:
     parameters = there(X)
-    again = back(parameters)
-    found = np.sum((X - again) ** 2, axis=(-2, -1)) < 1e-6 * np.sum(X * X, axis=(-2, -1))
-    return Line(
-        name,
+    times = (
         seconds(lambda: back(parameters), repeats) / len(X),
         seconds(lambda: there(X), repeats) / len(X),
-        squared_error(X[found], again[found]),
-        len(X),
-        int(np.sum(~found)),
     )
+    error, missed = round_trip(X, there, back)
+    return Line(name, *times, error, len(X), missed)
 
 
 def table1(count: int, repeats: int = 5) -> list[Line]:

@@ -22,7 +22,7 @@ _VERDICTS = {True: "holds", False: "broken", None: ""}
 @click.option("--ours", is_flag=True, help="Leave SciPy and pytransform3d out, which take most of the time.")
 @click.option("--json", "as_json", is_flag=True, help="Print every row as JSON.")
 def accuracy(quick: bool, ours: bool, as_json: bool) -> int:
-    """Compare with 50 digits over hard inputs, and judge the promises.
+    """Compare with 50 digits on hard inputs; judge promises.
 
     Each row is a function on a class of inputs: angles at and near 0 and pi,
     eigenvalues equal, nearly equal and far apart, condition numbers to 1e12,
@@ -35,7 +35,7 @@ def accuracy(quick: bool, ours: bool, as_json: bool) -> int:
     holds, 5 if one is broken.
     """
     if importlib.util.find_spec("mpmath") is None:
-        raise click.ClickException("mpmath is not installed. Install lietool[test], which brings it")
+        raise click.UsageError("mpmath is not installed. Install lietool[test], which brings it")
     from lietool.bench import accuracy, others, subjects
 
     missing = {} if ours else others.missing()

@@ -13,8 +13,9 @@ from lietool.verbs import _table
 @click.option("--quick", is_flag=True, help="Batches to 1000 only.")
 @click.option("--json", "as_json", is_flag=True, help="Print seconds per element as JSON.")
 def speed(which: str, quick: bool, as_json: bool) -> None:
-    """Time the functions of lietool.lie per element, in batches of 1, 1000 and a million.
+    """Time the functions of lietool.lie per element.
 
+    Batches have 1, 1000 and a million elements.
     NAME is a module or a function, such as so3 or so3.exp; without it, all.
     Each time is the median of several calls after one that is not counted,
     arguments checked, in one process; a batch that would take more than some

@@ -28,8 +28,9 @@ _JSON = click.option("--json", "as_json", is_flag=True, help="Print the measurem
 @_COUNT
 @_JSON
 def table1(count: int, as_json: bool) -> None:
-    """Measure exp and log of symmetric 3 x 3 matrices, as in table 1 of Kaji and Ochiai.
+    """Measure table 1 of Kaji and Ochiai: exp, log.
 
+    exp of symmetric 3 x 3 matrices, log of positive definite ones.
     Ours is lietool.lie.sym; the same as printed in the paper, (6) and (7);
     Higham's algorithm as SciPy has it, one matrix after the other, so on fewer
     of them; diagonalisation by LAPACK. The error is the largest squared
@@ -50,8 +51,9 @@ def table1(count: int, as_json: bool) -> None:
 @_COUNT
 @_JSON
 def table2(count: int, as_json: bool) -> None:
-    """Measure the parametrisations of Aff+(3), as in table 2 of Kaji and Ochiai, and try what they can do.
+    """Measure table 2 of Kaji and Ochiai: phi, psi.
 
+    The parametrisations of Aff+(3): what they cost, and what they can do.
     The error is the largest squared Frobenius norm |X - phi(psi(X))|^2 over
     normal X with det X > 1e-3. (The paper exchanges the columns phi and psi.)
     Every yes and no is the result of an experiment that looks for a
