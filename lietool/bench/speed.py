@@ -5,6 +5,7 @@ import inspect
 import pkgutil
 import re
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +20,9 @@ SIZES = (1, 1000, 1_000_000)
 PATIENCE = 3.0
 """A batch that would take longer than so many seconds is left out."""
 
-_ENTRY = re.compile(r"^(\w+) : (\([^)]*\))(?:, (.+))?$")
+_ENTRY = re.compile(r"^(\w+) : (\([^)]*\)|\{\w+\})(?:, (.+))?$")
 _SUPPORT = ("blocks", "checks", "kernels")
-_LETTERS = {"k": 3, "m": 3, "n": 3}
+_LETTERS = {"k": 3, "m": 4, "n": 3}
 
 
 def functions() -> dict[str, Callable]:
@@ -32,9 +33,11 @@ def functions() -> dict[str, Callable]:
             continue
         loaded = importlib.import_module(f"lietool.lie.{module.name}")
         for name, f in inspect.getmembers(loaded, inspect.isfunction):
-            ours = f.__module__.startswith("lietool.lie") and not name.startswith("_")
-            # A module with fewer underscores is where a reader finds what a longer one keeps.
-            if ours and (f not in found or module.name.count("_") < found[f].split(".")[0].count("_")):
+            home = f.__module__.rpartition(".")[2]
+            ours = f.__module__.startswith("lietool.lie.") and not name.startswith("_")
+            ours = ours and not (home.startswith("group_") or home.split("_")[-1] in _SUPPORT)
+            # `import f as f` in another module says that f is meant to be found there.
+            if ours and (f not in found or loaded.__name__ != f.__module__):
                 found[f] = f"{module.name}.{name}"
     return {name: f for f, name in sorted(found.items(), key=lambda item: item[1])}
 
@@ -62,6 +65,11 @@ def _affine(x: Array) -> Array:
     return A
 
 
+def _basis(x: Array) -> Array:
+    # One for all: of a million random ones, some are nearly dependent.
+    return np.broadcast_to(x[:1] - np.swapaxes(x[:1], -1, -2), x.shape).copy()
+
+
 def _positive(x: Array) -> Array:
     x[..., 0] *= np.sign(np.linalg.det(x))[..., None]
     return x
@@ -77,6 +85,8 @@ def _unit_dual_complex(x: Array) -> Array:
 
 _DOMAINS: dict[str, Callable[[Array], Array]] = {
     "": lambda x: x,
+    "basis": _basis,
+    "exponential": _affine,
     "radians": lambda x: x,
     "non-zero": lambda x: x,
     "positive": lambda x: np.abs(x) + 0.1,
@@ -97,7 +107,7 @@ _DOMAINS: dict[str, Callable[[Array], Array]] = {
 }
 
 
-def arguments(f: Callable, size: int) -> list[Array] | None:
+def arguments(f: Callable, size: int) -> list[Any] | None:
     """Return random arguments of a function, a batch of this size, or None where the domain is another."""
     rng = np.random.default_rng(31)
     found = []
@@ -106,6 +116,10 @@ def arguments(f: Callable, size: int) -> list[Array] | None:
         if line.startswith(" ") or not line or " : bool" in line:
             continue
         match = _ENTRY.match(line)
+        if match and match[2].startswith("{"):
+            # A choice: the first of the words that the module lists.
+            found.append(next(iter(getattr(inspect.getmodule(f), match[2].strip("{}")))))
+            continue
         domain = (match[3] or "").split(",")[0] if match else "?"
         core = [d.strip() for d in match[2].strip("()").split(",") if d.strip()] if match else []
         known = all(d in _LETTERS or d.isdigit() for d in core[1:])
@@ -113,7 +127,7 @@ def arguments(f: Callable, size: int) -> list[Array] | None:
             return None
         shape = (size, *(_LETTERS.get(d) or int(d) for d in core[1:]))
         found.append(_DOMAINS[domain](rng.normal(size=shape)))
-    return found
+    return found or None
 
 
 def time_of(name: str, sizes: tuple[int, ...] = SIZES, repeats: int = 5) -> dict[int, float | None]:

@@ -35,7 +35,8 @@ def table1(count: int, as_json: bool) -> None:
     Higham's algorithm as SciPy has it, one matrix after the other, so on fewer
     of them; diagonalisation by LAPACK. The error is the largest squared
     Frobenius norm |X - exp(log X)|^2, as in the paper. Random X = A^T A with
-    normal A, det A > 1e-3.
+    normal A, det A > 1e-3. The paper uses a single thread: so do NumPy and
+    SciPy with OPENBLAS_NUM_THREADS=1 in the environment.
     """
     from lietool.bench import tables
 

@@ -113,12 +113,14 @@ def test_every_function_that_takes_numbers_can_be_timed():
     assert {
         "so3.exp",
         "so3.from_axis_angle",
+        "dual_quaternion.dlb",
+        "generic.bracket",
         "quaternion.slerp",
         "blend.phi_so",
         "affine.psi_so",
     } <= names.keys()
     left = set(speed.left_out())
-    assert len(left) < 0.3 * len(names)
+    assert len(left) < 0.15 * len(names), left
     assert not [name for name in left if name.endswith((".exp", ".log")) and not name.startswith("generic")]
     for name in names.keys() - left:
         f = names[name]
