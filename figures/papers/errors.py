@@ -41,7 +41,7 @@ _Way = Callable[[np.ndarray], np.ndarray]
     }
 )
 def errors(
-    matrices: Annotated[int, Param("random matrices of each condition number", "", 10, 20000)] = 400,
+    matrices: Annotated[int, Param("random matrices of each condition number", "", 10, 20000)] = 100,
     seed: Annotated[int, Param("which random matrices", "", 0, 1000)] = 1,
 ) -> Drawing:
     """The errors of round trips over the condition number: ours, others', and the printed formulas'.
