@@ -3,6 +3,8 @@
 import json
 import math
 import re
+import shutil
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -107,7 +109,12 @@ def _page(about: dict[str, Any]) -> str:
         ("true gives", _text(about["true_gives"])),
         ("error", f"{_number(about['error'])} (of the true form {_number(about['error_of_true'])})"),
     ]
-    return "\n".join([*lines, *(f"  {head:<15}{text}" for head, text in rows)])
+    width = max(min(shutil.get_terminal_size((100, 24)).columns, 100), 60)
+    for head, text in rows:
+        lines += textwrap.wrap(
+            text, width, initial_indent=f"  {head:<15}", subsequent_indent=" " * 17, break_on_hyphens=False
+        )
+    return "\n".join(lines)
 
 
 def _text(value: Any) -> str:
