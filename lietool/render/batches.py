@@ -190,6 +190,15 @@ def _(record: Frame, lens: Lens) -> list[Batch]:
     return found
 
 
+def check_measures(record: Record) -> None:
+    """Refuse an opacity outside of 0 to 1, and a width, radius or type size that is negative or no number."""
+    for field, most in (("alpha", 1.0), ("width", np.inf), ("radius", np.inf), ("size", np.inf)):
+        value = getattr(record, field, 0.0)
+        if not (0.0 <= value <= most and np.isfinite(value)):
+            wanted = "0 to 1" if most == 1.0 else "finite and not negative"
+            raise ValueError(f"draw.render: {type(record).__name__}.{field} must be {wanted}; got {value}")
+
+
 def _finite(values: object, name: str) -> np.ndarray:
     array = np.asarray(values, float)
     if not np.isfinite(array).all():

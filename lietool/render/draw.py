@@ -15,7 +15,7 @@ import moderngl
 import numpy as np
 
 from lietool.render import compose, context, labels, style
-from lietool.render.batches import Batch, Lens, batches
+from lietool.render.batches import Batch, Lens, batches, check_measures
 from lietool.render.camera import Box, Page
 from lietool.render.scene import Picture, View
 
@@ -127,6 +127,8 @@ def _prepare(view: View, page: Box, unit: float) -> _Prepared:
         raise ValueError(f"draw.render: View.box must be x, y and a width and height above 0; got {box}")
     flat = isinstance(view.camera, Page)
     lens = Lens(view.camera, box, unit)
+    for record in view.records:
+        check_measures(record)
     found = [batch for record in view.records for batch in batches(record, lens)]
     opaque = [] if flat else [batch for batch in found if batch.opaque]
     rest = found if flat else [batch for batch in found if not batch.opaque]

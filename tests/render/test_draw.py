@@ -390,6 +390,22 @@ class TestRefused:
     @pytest.mark.parametrize(
         ("record", "name"),
         [
+            (Lines([(0, 0, 0), (9, 9, 0)], "#000000", -1.0), "Lines.width"),
+            (Lines([(0, 0, 0), (9, 9, 0)], "#000000", np.inf), "Lines.width"),
+            (Lines([(0, 0, 0), (9, 9, 0)], "#000000", alpha=np.nan), "Lines.alpha"),
+            (rectangle(0, 0, 9, 9, "#000000", 1.5), "Surface.alpha"),
+            (Points([(0, 0, 0)], "#000000", np.nan), "Points.radius"),
+            (Tube([(0, 0, 0), (9, 0, 0)], "#000000", -2.0), "Tube.radius"),
+            (Label("$x$", (5, 5, 0), "#000000", np.nan), "Label.size"),
+        ],
+    )
+    def test_what_cannot_be_measured(self, record, name):
+        with pytest.raises(ValueError, match=rf"^draw\.render: {name} must be .*; got "):
+            page(record)
+
+    @pytest.mark.parametrize(
+        ("record", "name"),
+        [
             (Surface([(0, 0, 0), (1, np.nan, 0), (1, 1, 0)], [(0, 1, 2)], "#000000"), "Surface.vertices"),
             (Points([(0, np.inf, 0)], "#000000"), "Points.positions"),
             (Tube([(0, 0, 0), (np.nan, 0, 0)], "#000000", 1.0), "Tube.points"),
