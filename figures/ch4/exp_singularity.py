@@ -44,7 +44,9 @@ FULL = 2.0 * np.pi
 )
 def exp_singularity(
     view: Annotated[Literal["stages", "paths"], Param("the four stages, or the two paths")] = "stages",
-    turn: Annotated[float, Param("how far the marked rotation has turned", "deg", 0.0, 1080.0)] = 500.0,
+    turn: Annotated[
+        float, Param("how far the marked rotation has turned; the paths end at 720", "deg", 0.0, 1080.0)
+    ] = 500.0,
     azimuth: Annotated[
         float,
         Param("direction of the marked rotation vector in the plane of the stages", "deg", -360.0, 360.0),
