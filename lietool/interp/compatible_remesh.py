@@ -1,0 +1,192 @@
+"""Turn a valid common triangulation into a good one: thin it out, then refine and smooth, coarse to fine.
+
+Every edit and every move keeps all triangles counter-clockwise in both planes
+(Surazhsky and Gotsman, High quality compatible triangulations, 2004; Baxter,
+Barla and Anjyo, Compatible embedding for 2D shape animation, 2009).  The
+length of an edge is the root mean square of its lengths in the two planes,
+each in units of the spacing there, so that a count of triangles can be asked
+for.  Beside short boundary edges shorter ones are wanted, growing inwards.
+"""
+
+import heapq
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lietool.interp.compatible_mesh import Mesh
+from lietool.interp.compatible_smooth import Stars
+
+Array = NDArray[np.float64]
+
+_GROWTH = 0.4
+_LONG, _SHORT = 1.4, 0.7
+# A collapse may leave this badness, or what was there before.
+_FAIR = 4.0
+_LEVELS = 4
+
+
+class Remesher:
+    """The state of the improvement: the mesh and the spacing in both planes."""
+
+    def __init__(self, mesh: Mesh, spacing: tuple[float, float]) -> None:
+        self.mesh = mesh
+        self.unit = (0.5 / spacing[0] ** 2, 0.5 / spacing[1] ** 2)
+        self.wanted: dict[int, float] = {}
+
+    def length(self, u: int, v: int) -> float:
+        """Return the length of an edge, in spacings."""
+        a, b, c, d = self.mesh.points[u]
+        e, f, g, h = self.mesh.points[v]
+        p, q = self.unit
+        return (p * ((e - a) ** 2 + (f - b) ** 2) + q * ((g - c) ** 2 + (h - d) ** 2)) ** 0.5
+
+    def plan(self, coarse: float) -> None:
+        """Set the edge length that is wanted at each vertex."""
+        mesh = self.mesh
+        wanted = dict.fromkeys(mesh.vertices(), coarse)
+        for u, v in mesh.next.items():
+            half = max(self.length(u, v), 1e-9)
+            wanted[u], wanted[v] = min(wanted[u], half), min(wanted[v], half)
+        heap = [(s, v) for v, s in wanted.items()]
+        heapq.heapify(heap)
+        while heap:
+            s, v = heapq.heappop(heap)
+            if s > wanted[v]:
+                continue
+            for w in mesh.ring(v):
+                t = s + _GROWTH * self.length(v, w)
+                if t < wanted[w]:
+                    wanted[w] = t
+                    heapq.heappush(heap, (t, w))
+        self.wanted = wanted
+
+    def stretch(self, u: int, v: int) -> float:
+        """Return the length of an edge against what is wanted at its ends."""
+        return 2.0 * self.length(u, v) / (self.wanted[u] + self.wanted[v])
+
+    def cost(self, *triangles: tuple[int, int, int]) -> float:
+        """Return the sum of the squared badness of triangles in both planes."""
+        return sum(p * p + q * q for p, q in (self.mesh.badness(*t) for t in triangles))
+
+    def flips(self, edges: Iterable[tuple[int, int]] | None = None) -> int:
+        """Flip edges while that lowers the cost, and return how many were."""
+        mesh, count = self.mesh, 0
+        queue = sorted(mesh.edges()) if edges is None else list(edges)
+        waiting = set(queue)
+        for u, v in queue:  # grows while it is walked
+            waiting.discard((u, v))
+            w, x = mesh.apex.get((u, v)), mesh.apex.get((v, u))
+            if w is None or x is None or (w, x) in mesh.apex or (x, w) in mesh.apex:
+                continue
+            after = self.cost((x, v, w), (w, u, x))
+            if after < (1.0 - 1e-9) * self.cost((u, v, w), (v, u, x)):
+                mesh.flip(u, v)
+                count += 1
+                for a, b in ((u, x), (x, v), (v, w), (w, u)):
+                    edge = (a, b) if (a, b) in mesh.apex and (a < b or (b, a) not in mesh.apex) else (b, a)
+                    if edge not in waiting:
+                        waiting.add(edge)
+                        queue.append(edge)
+        return count
+
+    def splits(self) -> int:
+        """Halve the edges that are too long, the longest first."""
+        mesh = self.mesh
+        heap = [(-self.stretch(u, v), u, v) for u, v in mesh.edges()]
+        heap = [entry for entry in heap if entry[0] < -_LONG]
+        heapq.heapify(heap)
+        count = 0
+        while heap:
+            stretch, u, v = heapq.heappop(heap)
+            if (u, v) not in mesh.apex or self.stretch(u, v) != -stretch:
+                continue
+            new = mesh.split(u, v)
+            self.wanted[new] = 0.5 * (self.wanted[u] + self.wanted[v])
+            count += 1
+            for w in mesh.ring(new):
+                edge = (new, w) if (new, w) in mesh.apex else (w, new)
+                again = self.stretch(*edge)
+                if again > _LONG:
+                    heapq.heappush(heap, (-again, *edge))
+        return count
+
+    def collapses(self, short: float = _SHORT) -> int:
+        """Remove inner vertices at edges that are too short, where the triangles stay fair."""
+        mesh, count = self.mesh, 0
+        order = sorted((self.stretch(u, v), u, v) for u, v in mesh.edges())
+        for _, a, b in order:
+            if self.stretch(a, b) >= short if a in mesh.start and b in mesh.start else True:
+                continue
+            if (a, b) not in mesh.apex:
+                continue
+            for u, v in ((a, b), (b, a)):
+                if self._collapse(u, v):
+                    count += 1
+                    break
+        return count
+
+    def _collapse(self, u: int, v: int) -> bool:
+        mesh = self.mesh
+        after = mesh.collapsed(u, v)
+        if after is None:
+            return False
+        ring = mesh.ring(u)
+        before = mesh.worst([(u, a, b) for a, b in zip(ring, ring[1:] + ring[:1], strict=True)])
+        if mesh.worst(after) > max(_FAIR, before):
+            return False
+        if max(self.stretch(v, w) for w in ring if w != v) > _LONG and before < _FAIR:
+            return False
+        mesh.collapse(u, v)
+        return True
+
+    def smooth(self, sweeps: int, power: float) -> None:
+        """Move the inner vertices of both drawings."""
+        mesh = self.mesh
+        faces = mesh.faces()
+        movable = np.zeros(len(mesh.points), bool)
+        movable[[v for v in mesh.start if v not in mesh.next]] = True
+        if not movable.any():
+            return
+        stars = Stars(faces, movable)
+        source, target = mesh.arrays()
+        for _ in range(sweeps):
+            stars.sweep(source, power)
+            stars.sweep(target, power)
+        mesh.place(source, target)
+
+    def relax(self, rounds: int, sweeps: int, power: float = 2.0) -> None:
+        """Smooth and flip in turn until nothing flips."""
+        for _ in range(rounds):
+            self.smooth(sweeps, power)
+            if not self.flips():
+                break
+
+
+def improve(mesh: Mesh, spacing: tuple[float, float], coarsest: float) -> Mesh:
+    """Return a good mesh of about the given spacing, its first vertices the corners.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    spacing : (float, float)
+        The edge length wanted in the source and in the target.
+    coarsest : float
+        The size of the shapes, in spacings.
+    """
+    work = Remesher(mesh, spacing)
+    corners = len(mesh.next)
+    work.flips()
+    level = max(0, min(_LEVELS, int(np.log2(max(coarsest, 1.0))) - 1))
+    for k in range(level, -1, -1):
+        coarse = 2.0**k
+        for turn in range(4 if k == level or k == 0 else 2):
+            work.plan(coarse)
+            work.collapses()
+            work.flips()
+            work.splits()
+            work.flips()
+            work.mesh = work.mesh.compact(corners)
+            work.relax(2, 8)
+    work.relax(8, 12)
+    return work.mesh.compact(corners)
