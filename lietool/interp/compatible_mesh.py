@@ -5,6 +5,7 @@ common triangulation by such edits, each tried in both planes before it is done.
 """
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +30,7 @@ class Mesh:
             self._add(a, b, c)
         # What follows on the boundary; there the walk around a vertex begins.
         self.next = dict(zip(rim, rim[1:] + rim[:1], strict=True))
-        self.start = dict(self.apex)
-        self.start = {u: v for u, v in self.apex}
+        self.start: dict[int, int] = dict(self.apex.keys())
         self.start.update(self.next)
 
     def _add(self, a: int, b: int, c: int) -> None:
@@ -121,7 +121,7 @@ class Mesh:
             return None
         k = ring.index(v)
         ring = ring[k + 1 :] + ring[:k]
-        return [(v, a, b) for a, b in zip(ring, ring[1:], strict=False)]
+        return [(v, a, b) for a, b in pairwise(ring)]
 
     def collapse(self, u: int, v: int) -> None:
         """Pull an inner vertex into a neighbour."""

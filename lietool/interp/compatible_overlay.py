@@ -21,8 +21,8 @@ Chords = NDArray[np.intp]
 
 _SHAPE_WEIGHT = 0.1
 _ROUNDS = 8
-# A diagonal that passes a corner closer than this, relative to the polygon's size, is a last resort.
-_CLEARANCE = 1e-7
+# Diagonals that pass a corner closer than this, relative to the polygon's size, are a last resort.
+_CLEARANCES = (1e-7, 1e-11, 1e-15)
 
 
 class OverlayError(Exception):
@@ -44,12 +44,24 @@ def common(P: Array, Q: Array) -> tuple[Array, Array, NDArray[np.intp]]:
     faces : (m, 3) of int
         Counter-clockwise in both.
     """
+    for clearance in _CLEARANCES:
+        try:
+            return _common(P, Q, clearance)
+        except OverlayError:
+            if clearance == _CLEARANCES[-1]:
+                raise
+    raise OverlayError
+
+
+def _common(P: Array, Q: Array, clearance: float) -> tuple[Array, Array, NDArray[np.intp]]:
     n = len(P)
-    first, second = _pair(P, Q)
+    first, second = _pair(P, Q, clearance)
     shared = _members(first, second)
     crossing = _crossings(first[~shared], second[~_members(second, first)])
     pairs = np.stack(np.nonzero(crossing), axis=1)
-    ends = np.concatenate([first[~shared][pairs[:, 0]], second[~_members(second, first)][pairs[:, 1]]], axis=1)
+    ends = np.concatenate(
+        [first[~shared][pairs[:, 0]], second[~_members(second, first)][pairs[:, 1]]], axis=1
+    )
     along_first = _paths(n, first, ends, 0)
     along_second = _paths(n, second, ends, 1)
     source = _spread(P, len(ends), along_first)
@@ -59,10 +71,10 @@ def common(P: Array, Q: Array) -> tuple[Array, Array, NDArray[np.intp]]:
     return source, target, _fans(polygons, source, target)
 
 
-def _pair(P: Array, Q: Array) -> tuple[Chords, Chords]:
+def _pair(P: Array, Q: Array, clearance: float) -> tuple[Chords, Chords]:
     """Return the diagonals of a triangulation of each polygon, with few crossings between them."""
     n = len(P)
-    seen, shape = zip(*((_visible(X, _CLEARANCE), _Shapes(X)) for X in (P, Q)), strict=True)
+    seen, shape = zip(*((_visible(X, clearance), _Shapes(X)) for X in (P, Q)), strict=True)
     # Start with diagonals that the other polygon has as well.
     chords = [_best(P, seen[0], (~seen[1]).astype(float), shape[0])]
     chords.append(_best(Q, seen[1], _weights(n, chords[0]), shape[1]))
@@ -109,7 +121,9 @@ def _best(points: Array, seen: NDArray[np.bool_], weight: Array, shapes: _Shapes
         pick = np.argmin(total, axis=1)
         i, j, rows = i[:, 0], j[:, 0], np.arange(n - span)
         closed = span == n - 1
-        cost[i, j] = np.where(closed | seen[i, j], total[rows, pick] + (0.0 if closed else weight[i, j]), np.inf)
+        cost[i, j] = np.where(
+            closed | seen[i, j], total[rows, pick] + (0.0 if closed else weight[i, j]), np.inf
+        )
         choice[i, j] = k[rows, pick]
     if not np.isfinite(cost[0, n - 1]):
         raise OverlayError
@@ -203,7 +217,9 @@ def _spread(corners: Array, count: int, paths: list[list[int]]) -> Array:
 
 def _faces(n: int, ends: Chords, paths: list[list[int]]) -> list[list[int]]:
     """Return the faces on the left of all edges inside, from the order of the edges around each vertex."""
-    towards: list[dict[int, int]] = [{} for _ in range(n + len(ends))]  # corner in that direction -> neighbour
+    towards: list[dict[int, int]] = [
+        {} for _ in range(n + len(ends))
+    ]  # corner in that direction -> neighbour
     for i in range(n):
         towards[i][(i + 1) % n] = (i + 1) % n
         towards[i][i - 1 if i else n - 1] = i - 1 if i else n - 1

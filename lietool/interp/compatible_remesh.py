@@ -9,13 +9,12 @@ for.  Beside short boundary edges shorter ones are wanted, growing inwards.
 """
 
 import heapq
-from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lietool.interp.compatible_mesh import Mesh
-from lietool.interp.compatible_smooth import Stars
+from lietool.interp.compatible_smooth import Stars, badness
 
 Array = NDArray[np.float64]
 
@@ -23,7 +22,10 @@ _GROWTH = 0.4
 _LONG, _SHORT = 1.4, 0.7
 # A collapse may leave this badness, or what was there before.
 _FAIR = 4.0
-_LEVELS = 4
+MOST = 50_000
+"""Triangles that are made one edit at a time."""
+
+_ROUNDS, _FIRST = 16, 2
 
 
 class Remesher:
@@ -69,10 +71,10 @@ class Remesher:
         """Return the sum of the squared badness of triangles in both planes."""
         return sum(p * p + q * q for p, q in (self.mesh.badness(*t) for t in triangles))
 
-    def flips(self, edges: Iterable[tuple[int, int]] | None = None) -> int:
+    def flips(self) -> int:
         """Flip edges while that lowers the cost, and return how many were."""
         mesh, count = self.mesh, 0
-        queue = sorted(mesh.edges()) if edges is None else list(edges)
+        queue = self._worth_flipping()
         waiting = set(queue)
         for u, v in queue:  # grows while it is walked
             waiting.discard((u, v))
@@ -90,14 +92,27 @@ class Remesher:
                         queue.append(edge)
         return count
 
-    def splits(self) -> int:
-        """Halve the edges that are too long, the longest first."""
+    def _worth_flipping(self) -> list[tuple[int, int]]:
+        """Return the inner edges that a flip would improve, looked at all at once."""
+        apex = self.mesh.apex
+        rows = [(u, v, w, apex[v, u]) for (u, v), w in apex.items() if u < v and (v, u) in apex]
+        u, v, w, x = np.array(sorted(rows), np.intp).reshape(-1, 4).T
+        drawings = np.stack(self.mesh.arrays())
+
+        def cost(*corners: NDArray[np.intp]) -> Array:
+            return np.sum(badness(drawings, np.stack(corners, axis=1)) ** 2, axis=0)
+
+        gain = cost(x, v, w) + cost(w, u, x) < (1.0 - 1e-9) * (cost(u, v, w) + cost(v, u, x))
+        return list(zip(u[gain].tolist(), v[gain].tolist(), strict=True))
+
+    def splits(self, most: int) -> int:
+        """Halve the edges that are too long, the longest first, until there are so many triangles."""
         mesh = self.mesh
         heap = [(-self.stretch(u, v), u, v) for u, v in mesh.edges()]
         heap = [entry for entry in heap if entry[0] < -_LONG]
         heapq.heapify(heap)
         count = 0
-        while heap:
+        while heap and len(mesh.apex) < 3 * most:
             stretch, u, v = heapq.heappop(heap)
             if (u, v) not in mesh.apex or self.stretch(u, v) != -stretch:
                 continue
@@ -140,6 +155,16 @@ class Remesher:
         mesh.collapse(u, v)
         return True
 
+    def step(self, coarse: float, corners: int, most: int) -> None:
+        """Bring the lengths of the edges near what is wanted, and smooth."""
+        self.plan(coarse)
+        self.collapses()
+        self.flips()
+        self.splits(most)
+        self.flips()
+        self.mesh = self.mesh.compact(corners)
+        self.relax(2, 8)
+
     def smooth(self, sweeps: int, power: float) -> None:
         """Move the inner vertices of both drawings."""
         mesh = self.mesh
@@ -149,11 +174,10 @@ class Remesher:
         if not movable.any():
             return
         stars = Stars(faces, movable)
-        source, target = mesh.arrays()
+        drawings = np.ascontiguousarray(np.stack(mesh.arrays()).transpose(2, 0, 1))
         for _ in range(sweeps):
-            stars.sweep(source, power)
-            stars.sweep(target, power)
-        mesh.place(source, target)
+            stars.sweep(drawings, power)
+        mesh.place(*drawings.transpose(1, 2, 0))
 
     def relax(self, rounds: int, sweeps: int, power: float = 2.0) -> None:
         """Smooth and flip in turn until nothing flips."""
@@ -163,8 +187,8 @@ class Remesher:
                 break
 
 
-def improve(mesh: Mesh, spacing: tuple[float, float], coarsest: float) -> Mesh:
-    """Return a good mesh of about the given spacing, its first vertices the corners.
+def improve(mesh: Mesh, spacing: tuple[float, float], coarsest: float, triangles: int | None) -> Mesh:
+    """Return a good mesh of about the given spacing or count, its first vertices the corners.
 
     Parameters
     ----------
@@ -172,21 +196,29 @@ def improve(mesh: Mesh, spacing: tuple[float, float], coarsest: float) -> Mesh:
     spacing : (float, float)
         The edge length wanted in the source and in the target.
     coarsest : float
-        The size of the shapes, in spacings.
+        The length to begin with, in spacings.
+    triangles : int or None
+        If given, refinement ends there whatever the spacing: where the maps stretch
+        much, triangles are slender and a spacing takes many more of them.
     """
     work = Remesher(mesh, spacing)
-    corners = len(mesh.next)
+    corners, most = len(mesh.next), triangles or MOST
     work.flips()
-    level = max(0, min(_LEVELS, int(np.log2(max(coarsest, 1.0))) - 1))
-    for k in range(level, -1, -1):
-        coarse = 2.0**k
-        for turn in range(4 if k == level or k == 0 else 2):
-            work.plan(coarse)
-            work.collapses()
-            work.flips()
-            work.splits()
-            work.flips()
-            work.mesh = work.mesh.compact(corners)
-            work.relax(2, 8)
+    coarse = max(coarsest, 1.0)
+    for turn in range(_ROUNDS):
+        work.step(coarse, corners, most)
+        if turn < _FIRST:
+            continue
+        count = len(work.mesh.apex) / 3
+        if triangles is None:
+            if coarse == 1.0:
+                break
+            coarse = max(1.0, 0.5 * coarse)
+        else:
+            if count > 0.95 * triangles:
+                break
+            coarse *= max(0.5, (count / triangles) ** 0.5)
+    for _ in range(2):
+        work.step(coarse, corners, most)
     work.relax(8, 12)
     return work.mesh.compact(corners)

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
+Pair = tuple[Array, Array]
 
 _SQRT12 = 2.0 * np.sqrt(3.0)
-_STEPS = 0.5 ** np.arange(8.0)
+_STEPS = 0.5 ** np.arange(1.0, 8.0)
 # Beyond this a determinant could be rounding: 1e10 leaves five digits of it.
 WORST = 1e10
 
@@ -26,24 +27,25 @@ def badness(points: Array, faces: Ints) -> Array:
 
     Parameters
     ----------
-    points : (n, 2)
+    points : (..., n, 2)
     faces : (m, 3) of int
 
     Returns
     -------
-    f : (m,)
+    f : (..., m)
     """
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    return _badness(a, b, c)
+    a, b, c = (points[..., faces[:, k], :] for k in range(3))
+    return _badness(*((p[..., 0], p[..., 1]) for p in (a, b, c)))
 
 
-def _badness(a: Array, b: Array, v: Array) -> Array:
-    ab, av, bv = b - a, v - a, v - b
-    sides = np.sum(ab * ab, axis=-1) + np.sum(av * av, axis=-1) + np.sum(bv * bv, axis=-1)
-    twice = ab[..., 0] * av[..., 1] - ab[..., 1] * av[..., 0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        f = sides / (_SQRT12 * twice)
-    return np.where((twice > 0.0) & (f < WORST), f, np.inf)
+def _badness(a: Pair, b: Pair, v: Pair) -> Array:
+    # Coordinates apart: sums over an axis of length 2 would take most of the time.
+    abx, aby, avx, avy = b[0] - a[0], b[1] - a[1], v[0] - a[0], v[1] - a[1]
+    bvx, bvy = v[0] - b[0], v[1] - b[1]
+    sides = abx * abx + aby * aby + avx * avx + avy * avy + bvx * bvx + bvy * bvy
+    twice = _SQRT12 * (abx * avy - aby * avx)
+    good = twice * WORST > sides
+    return np.where(good, sides / np.where(good, twice, 1.0), np.inf)
 
 
 class Stars:
@@ -69,41 +71,49 @@ class Stars:
 
         Parameters
         ----------
-        points : (n, 2)
+        points : (2, k, n)
+            x and y, of each of k drawings.
         power : float
             At least 1; the larger, the more the worst triangles count.
         """
         for vertices, left, right, real in self.groups:
-            a, b, v = points[left], points[right], points[vertices]
-            step = _newton(a, b, v, real, power)
-            trial = v + _STEPS[:, None, None] * step
-            f = np.where(real, _badness(a, b, trial[..., None, :]), 1.0)
-            energy = np.sum(f**power, axis=-1)
-            now = np.sum(np.where(real, _badness(a, b, v[:, None]), 1.0) ** power, axis=-1)
-            pick = np.argmin(energy, axis=0)
-            rows = np.arange(len(vertices))
-            better = energy[pick, rows] < now
-            points[vertices[better]] = trial[pick, rows][better]
+            a, b, v = points[:, :, left], points[:, :, right], points[:, :, vertices]
+            now, step = _newton(a, b, v[..., None], real, power)
+            trial = v + step
+            late = _energy(a, b, trial, real, power) >= now
+            if late.any():
+                k, i = np.nonzero(late)
+                some = v[:, k, i] + _STEPS[:, None, None] * step[:, k, i]
+                energy = _energy(a[:, k, i], b[:, k, i], some.transpose(1, 0, 2), real[i], power)
+                pick, rows = np.argmin(energy, axis=0), np.arange(len(k))
+                better = energy[pick, rows] < now[k, i]
+                trial[:, k, i] = np.where(better, some[pick, :, rows].T, v[:, k, i])
+            points[:, :, vertices] = trial
 
 
-def _newton(a: Array, b: Array, v: Array, real: NDArray[np.bool_], power: float) -> Array:
-    """Return Newton's step of the sum of f^power, or one along the gradient where that is singular."""
-    ab = b - a
-    slope = _SQRT12 * np.stack([-ab[..., 1], ab[..., 0]], axis=-1)
-    f = np.where(real, _badness(a, b, v[:, None]), 1.0)
-    det = np.where(real, np.sum(slope * (v[:, None] - a), axis=-1), 1.0)
-    df = (2.0 * (2.0 * v[:, None] - a - b) - f[..., None] * slope) / det[..., None]
-    cross = df[..., :, None] * slope[..., None, :]
-    ddf = (4.0 * np.eye(2) - cross - np.swapaxes(cross, -1, -2)) / det[..., None, None]
-    weight = np.where(real, power * (f / f.max(axis=1, keepdims=True)) ** (power - 1.0), 0.0)
-    gradient = np.sum(weight[..., None] * df, axis=1)
-    squares = ((power - 1.0) * weight / f)[..., None, None] * (df[..., :, None] * df[..., None, :])
-    hessian = np.sum(weight[..., None, None] * ddf + squares, axis=1)
-    p, q, r = hessian[:, 0, 0], hessian[:, 0, 1], hessian[:, 1, 1]
+def _energy(a: Array, b: Array, v: Array, real: NDArray[np.bool_], power: float) -> Array:
+    f = _badness((a[0], a[1]), (b[0], b[1]), (v[0][..., None], v[1][..., None]))
+    return np.sum(np.where(real, f, 0.0) ** power, axis=-1)
+
+
+def _newton(a: Array, b: Array, v: Array, real: NDArray[np.bool_], power: float) -> tuple[Array, Array]:
+    """Return the sum of f^power and Newton's step for it; along the gradient where that is singular."""
+    sx, sy = _SQRT12 * (a[1] - b[1]), _SQRT12 * (b[0] - a[0])
+    f = np.where(real, _badness((a[0], a[1]), (b[0], b[1]), (v[0], v[1])), 1.0)
+    inverse = 1.0 / np.where(real, sx * (v[0] - a[0]) + sy * (v[1] - a[1]), 1.0)
+    fx = (2.0 * (2.0 * v[0] - a[0] - b[0]) - f * sx) * inverse
+    fy = (2.0 * (2.0 * v[1] - a[1] - b[1]) - f * sy) * inverse
+    top = f.max(axis=-1, keepdims=True)
+    weight = np.where(real, power * (f / top) ** (power - 1.0), 0.0)
+    gx, gy = np.sum(weight * fx, axis=-1), np.sum(weight * fy, axis=-1)
+    bend = (power - 1.0) / f
+    p = np.sum(weight * ((4.0 - 2.0 * fx * sx) * inverse + bend * fx * fx), axis=-1)
+    q = np.sum(weight * (bend * fx * fy - (fx * sy + fy * sx) * inverse), axis=-1)
+    r = np.sum(weight * ((4.0 - 2.0 * fy * sy) * inverse + bend * fy * fy), axis=-1)
     det = p * r - q * q
     det = np.where(det > 1e-14 * (p + r) ** 2, det, (p + r) ** 2)
-    x, y = gradient[:, 0], gradient[:, 1]
-    return np.stack([q * y - r * x, q * x - p * y], axis=-1) / det[:, None]
+    now = np.sum(np.where(real, f, 0.0) ** power, axis=-1)
+    return now, np.stack([q * gy - r * gx, q * gx - p * gy]) / det
 
 
 def _groups(faces: Ints, movable: NDArray[np.bool_]) -> list[Ints]:
