@@ -49,7 +49,9 @@ def consistent(
     principal = checks.array(where, "principal", principal, ())
     F = topology.faces(where, F, int(np.max(F)) + 1)
     if principal.shape != (len(F),):
-        checks.fail(where, "principal", f"one angle for each of the {len(F)} triangles", f"{principal.shape}", None)
+        checks.fail(
+            where, "principal", f"one angle for each of the {len(F)} triangles", f"{principal.shape}", None
+        )
     _in_range(where, "seed", seed, len(F))
     pairs = topology.edges(where, F).inner
     number, component = topology.components(len(F), pairs)

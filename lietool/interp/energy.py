@@ -81,45 +81,68 @@ def balanced(w: float | ArrayLike) -> Energy:
     return Energy("frobenius", share if share.ndim else float(share))
 
 
-def metric(energy: Energy, corners: Array) -> Complex:
-    """Return the matrix G of each triangle, given its corners (m, 3, 2); shape (m, 2, 2)."""
-    G = np.zeros((len(corners), 2, 2), complex)
+@dataclass(frozen=True, eq=False)
+class Metric:
+    """The Hermitian matrices G = [[p, q], [conj q, p]] of triangles; p real and q complex, shape (m,)."""
+
+    p: Array
+    q: Complex
+
+    def times(self, x: Complex) -> Complex:
+        """Return G x for x (2, m)."""
+        return np.stack([self.p * x[0] + self.q * x[1], np.conj(self.q) * x[0] + self.p * x[1]])
+
+    def scaled(self, weights: Array) -> "Metric":
+        """Return the matrices times a number for each triangle."""
+        return Metric(weights * self.p, weights * self.q)
+
+
+def metric(energy: Energy, corners: Array) -> Metric:
+    """Return the matrix G of each triangle, given its corners (m, 3, 2)."""
     if energy.metric == "frobenius":
-        G[:, 0, 0] = G[:, 1, 1] = 2.0
-        return G
+        return Metric(np.full(len(corners), 2.0), np.zeros(len(corners), complex))
     p = corners[..., 0] + 1j * corners[..., 1]
     p = p - p.mean(axis=-1, keepdims=True)
-    G[:, 0, 0] = G[:, 1, 1] = np.sum(np.abs(p) ** 2, axis=-1)
     # |beta p + gamma conj p|^2 has the mixed term conj(beta) gamma conj(p)^2.
-    G[:, 0, 1] = np.sum(np.conj(p) ** 2, axis=-1)
-    G[:, 1, 0] = np.conj(G[:, 0, 1])
-    return G
+    return Metric(np.sum(np.abs(p) ** 2, axis=-1), np.sum(np.conj(p) ** 2, axis=-1))
 
 
-def form(energy: Energy, G: Complex, A: Complex) -> Complex:
-    """Return the Hermitian matrix Q of the error x* Q x - 2 Re(x* r) + c; shape (..., m, 2, 2).
+@dataclass(frozen=True, eq=False)
+class Form:
+    """The error x* Q x - 2 Re(x* r) + c of triangles, Q = [[first, mixed], [conj mixed, second]]; x, r (2, m)."""
+
+    first: Array
+    second: Array
+    mixed: Complex
+    r: Complex
+    c: Array
+
+    def at(self, x: Complex) -> Array:
+        """Return the error (m,); the exact value is never negative, rounding may leave it so."""
+        square = self.first * _square(x[0]) + self.second * _square(x[1])
+        cross = np.conj(x[0]) * self.mixed * x[1] - np.conj(x[0]) * self.r[0] - np.conj(x[1]) * self.r[1]
+        return np.maximum(square + 2.0 * cross.real + self.c, 0.0)
+
+
+def form(energy: Energy, G: Metric, a: Complex) -> Form:
+    """Return the error of triangles as a form in the coordinates of a map.
 
     Parameters
     ----------
     energy : Energy
-    G : (m, 2, 2)
-        From `metric`.
-    A : (..., m, 2)
+    G : Metric
+    a : ndarray of complex, shape (2, m)
         The coordinates of the maps to be reached.
     """
-    if energy.is_rigid:
-        return G
-    Ga = np.einsum("mij,...mj->...mi", G, A)
-    size = np.sum(np.conj(A) * Ga, axis=-1).real
-    forgiven = Ga[..., :, None] * np.conj(Ga[..., None, :]) / size[..., None, None]
-    return G - (1.0 - _column(energy.rigid, 2)) * forgiven
-
-
-def pull(energy: Energy, G: Complex, A: Complex) -> tuple[Complex, Array]:
-    """Return r (..., m, 2) and c (..., m) of the error x* Q x - 2 Re(x* r) + c."""
     w = np.asarray(energy.rigid, float)
-    Ga = np.einsum("mij,...mj->...mi", G, A)
-    return _column(w, 1) * Ga, w * np.sum(np.conj(A) * Ga, axis=-1).real
+    Ga = G.times(a)
+    size = (np.conj(a[0]) * Ga[0] + np.conj(a[1]) * Ga[1]).real
+    first, second, mixed = G.p, G.p, G.q
+    if not energy.is_rigid:
+        forgiven = (1.0 - w) / size
+        first, second = G.p - forgiven * _square(Ga[0]), G.p - forgiven * _square(Ga[1])
+        mixed = G.q - forgiven * Ga[0] * np.conj(Ga[1])
+    return Form(first, second, mixed, w * Ga, w * size)
 
 
 def error(B: ArrayLike, A: ArrayLike, energy: Energy = FROBENIUS, corners: ArrayLike | None = None) -> Array:
@@ -154,17 +177,10 @@ def error(B: ArrayLike, A: ArrayLike, energy: Energy = FROBENIUS, corners: Array
     p = checks.array("energy.error", "corners", np.zeros((3, 2)) if corners is None else corners, (3, 2))
     p = np.broadcast_to(p, (*shape, 3, 2)).reshape(-1, 3, 2)
     x, a = (
-        np.stack(triangle.coordinates(np.broadcast_to(M, (*shape, 2, 2)).reshape(-1, 2, 2)), axis=-1)
-        for M in (B, A)
+        np.stack(triangle.coordinates(np.broadcast_to(M, (*shape, 2, 2)).reshape(-1, 2, 2))) for M in (B, A)
     )
-    G = metric(energy, p)
-    r, c = pull(energy, G, a)
-    Q = form(energy, G, a)
-    value = np.einsum("mi,mij,mj->m", np.conj(x), Q, x).real - 2.0 * np.sum(np.conj(x) * r, axis=-1).real + c
-    # The exact value is never negative; rounding may leave it so.
-    return np.maximum(value, 0.0).reshape(shape)
+    return form(energy, metric(energy, p), a).at(x).reshape(shape)
 
 
-def _column(w: float | Array, axes: int) -> Array:
-    w = np.asarray(w, float)
-    return w.reshape(*w.shape, *(1,) * axes)
+def _square(z: Complex) -> Array:
+    return z.real**2 + z.imag**2

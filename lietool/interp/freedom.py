@@ -80,7 +80,11 @@ def require(where: str, freedoms: Freedoms, rows: Rows, count: int) -> None:
         if rank < len(names):
             # The freedom that the first unseen movement consists of most.
             kind, part, _ = names[int(np.argmax(np.abs(V[rank])))]
-            of = "" if freedoms.parts == 1 else f" of part {part} (vertex {int(np.argmax(freedoms.part == part))})"
+            of = (
+                ""
+                if freedoms.parts == 1
+                else f" of part {part} (vertex {int(np.argmax(freedoms.part == part))})"
+            )
             checks.fail(
                 where,
                 "constraints",

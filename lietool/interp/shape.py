@@ -63,7 +63,8 @@ class Prepared:
 
     @cached_property
     def _first(self) -> system.Factor:
-        return _factor(self, 0.0, constraint.rows(self.constraints, len(self.source), np.zeros(1)), 0)
+        rows = constraint.rows(self.constraints, len(self.source), np.zeros(1))
+        return _factor(self, [part.form(0.0) for part in self.sums], rows, 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,9 +88,8 @@ class Result:
     @cached_property
     def jacobians(self) -> Array:
         """The maps B_i(t) of the triangles; shape (T, m, 2, 2)."""
-        corners = _complex(self.vertices)[:, self.prepared.faces]
-        x = np.einsum("mia,tma->tmi", self.prepared.sums[0].K, corners)
-        return triangle.matrix(x[..., 0], x[..., 1])
+        corners = _complex(self.vertices)[:, self.prepared.faces.T]
+        return np.stack([triangle.matrix(*self.prepared.sums[0].coordinates(c)) for c in corners])
 
     @cached_property
     def det(self) -> Array:
@@ -105,10 +105,10 @@ class Result:
     @cached_property
     def energy(self) -> Array:
         """The weighted sum of the triangles' errors; shape (T,)."""
-        corners = _complex(self.vertices)[:, self.prepared.faces]
+        corners = _complex(self.vertices)[:, self.prepared.faces.T]
         return np.array(
             [
-                sum(float(part.errors(c, t).sum()) for part in self.prepared.sums)
+                sum(float(part.form(t).at(part.coordinates(c)).sum()) for part in self.prepared.sums)
                 for c, t in zip(corners, self.t.tolist(), strict=True)
             ]
         )
@@ -240,8 +240,9 @@ def solve(prepared: Prepared, t: ArrayLike) -> Result:
     found, residuals = [], []
     for first in range(0, len(times), step):
         frames = np.arange(first, min(first + step, len(times)))
-        factor = prepared._first if prepared.is_static else _factor(prepared, float(times[first]), rows, first)
-        v, residual = _frames(prepared, factor, rows, times, frames)
+        forms = [[part.form(float(times[frame])) for part in prepared.sums] for frame in frames]
+        factor = prepared._first if prepared.is_static else _factor(prepared, forms[0], rows, first)
+        v, residual = _frames(prepared, factor, rows, forms, frames)
         found.append(v)
         residuals.append(residual)
     v = np.concatenate(found, axis=1).T
@@ -249,13 +250,19 @@ def solve(prepared: Prepared, t: ArrayLike) -> Result:
 
 
 def _frames(
-    prepared: Prepared, factor: system.Factor, rows: constraint.Rows, times: Array, frames: Index
+    prepared: Prepared,
+    factor: system.Factor,
+    rows: constraint.Rows,
+    forms: list[list[energy.Form]],
+    frames: Index,
 ) -> tuple[Complex, Array]:
     b = np.zeros((len(prepared.source), len(frames)), complex)
-    flat = prepared.faces.ravel()
-    for column, frame in enumerate(frames):
-        for part in prepared.sums:
-            pull = part.pull(float(times[frame]))[0].ravel()
+    flat = prepared.faces.T.ravel()
+    for column, errors in enumerate(forms):
+        for part, form in zip(prepared.sums, errors, strict=True):
+            if part.energy.is_similarity:
+                continue
+            pull = part.pull(form).ravel()
             b[:, column] += np.bincount(flat, pull.real, len(b)) + 1j * np.bincount(flat, pull.imag, len(b))
     fixed, soft, beside = _kinds(rows)
     for k in soft:
@@ -271,9 +278,10 @@ def _frames(
     return factor.solve(b, values, rows.values[fixed][:, frames])
 
 
-def _factor(prepared: Prepared, t: float, rows: constraint.Rows, frame: int) -> system.Factor:
+def _factor(prepared: Prepared, forms: list[energy.Form], rows: constraint.Rows, frame: int) -> system.Factor:
     at, matrix = prepared.layout, prepared.pattern
-    entries = sum(matrix.add(part.blocks(t)) for part in prepared.sums)
+    parts = zip(prepared.sums, forms, strict=True)
+    entries = sum(matrix.add(part.blocks(form)) for part, form in parts)
     if all(part.energy.is_rigid for part in prepared.sums):
         # E^F and E^P treat x and y alike: what is left of the imaginary part is rounding.
         entries = entries.real
@@ -291,12 +299,16 @@ def _factor(prepared: Prepared, t: float, rows: constraint.Rows, frame: int) -> 
     anchor[np.arange(len(anchor)), prepared.anchors] = 1.0
     back = np.full(len(anchor), -1.0 / strength)
     if at.real:
-        anchor = np.concatenate([np.hstack([anchor.real, 0 * anchor.real]), np.hstack([0 * anchor.real, anchor.real])])
+        anchor = np.concatenate(
+            [np.hstack([anchor.real, 0 * anchor.real]), np.hstack([0 * anchor.real, anchor.real])]
+        )
         back = np.tile(back, 2)
     conditions = np.concatenate([system.dense(rows, frame, beside, n, at.real), anchor])
     if not np.iscomplexobj(entries) and not np.any(conditions.imag):
         conditions = conditions.real
-    return system.Factor(at, entries, conditions, np.concatenate([system.deltas(rows, beside, at.real), back]))
+    return system.Factor(
+        at, entries, conditions, np.concatenate([system.deltas(rows, beside, at.real), back])
+    )
 
 
 def _kinds(rows: constraint.Rows) -> tuple[Index, Index, Index]:
@@ -334,20 +346,22 @@ def _read(
     over = np.linalg.det(A) <= 0.0
     if over.any():
         k = int(np.argmax(over))
-        remedy = "Reverse the order of one shape's vertices." if over.all() else "Mend the triangulation there."
+        remedy = (
+            "Reverse the order of one shape's vertices." if over.all() else "Mend the triangulation there."
+        )
         got = f"{int(over.sum())} turned over, the first triangle {k}"
         checks.fail(where, "target", "oriented as the source in every triangle", got, None, remedy)
     return P, Q, F, A
 
 
-def _weights(
-    where: str, weights: ArrayLike | None, P: Array, Q: Array, F: Index
-) -> tuple[Array, Array]:
+def _weights(where: str, weights: ArrayLike | None, P: Array, Q: Array, F: Index) -> tuple[Array, Array]:
     if weights is None:
         return np.abs(topology.areas(P, F)), np.abs(topology.areas(Q, F))
     w = checks.array(where, "weights", weights, ())
     if w.shape != (len(F),) or not np.all(w > 0.0):
-        checks.fail(where, "weights", f"{len(F)} positive numbers", f"shape {w.shape}, least {np.min(w):g}", None)
+        checks.fail(
+            where, "weights", f"{len(F)} positive numbers", f"shape {w.shape}, least {np.min(w):g}", None
+        )
     return w, w
 
 
@@ -363,11 +377,11 @@ def _sums(
     symmetric: bool,
 ) -> tuple[terms.Term, ...]:
     forth = terms.homotopy_coordinates(A, theta, homotopy)
-    there = terms.term(error, _complex(P)[F], weights[0], forth)
+    there = terms.term(error, _complex(P)[F.T], weights[0], forth)
     if not symmetric:
         return (there,)
     back = terms.homotopy_coordinates(np.linalg.inv(A), -theta, homotopy)
-    return there, terms.term(error, _complex(Q)[F], weights[1], lambda t: back(1.0 - t))
+    return there, terms.term(error, _complex(Q)[F.T], weights[1], lambda t: back(1.0 - t))
 
 
 def _freedoms(P: Array, F: Index, sums: tuple[terms.Term, ...]) -> freedom.Freedoms:
@@ -390,7 +404,9 @@ def _default(
             continue
         owner = int(np.argmax((F == vertex).any(axis=1)))
         other = int(next(v for v in F[owner] if v != vertex))
-        found.append(constraint.Edge(other, vertex, _carried(A[owner], theta[owner], homotopy, P[other] - P[vertex])))
+        found.append(
+            constraint.Edge(other, vertex, _carried(A[owner], theta[owner], homotopy, P[other] - P[vertex]))
+        )
     return found
 
 
