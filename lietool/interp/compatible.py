@@ -11,6 +11,7 @@ Every triangle is checked exactly at the end.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -167,7 +168,8 @@ def subdivide(mesh: Compatible, times: int = 1) -> Compatible:
 def _triangulate(
     where: str, P: ArrayLike, Q: ArrayLike, spacing: float | None, triangles: int | None, after: str
 ) -> Compatible:
-    P, Q = outline.check(where, "P" + after, P), outline.check(where, "Q" + after, Q)
+    remedy = ("Ask for more samples.",) if after else ()
+    P, Q = (outline.check(where, name + after, X, *remedy) for name, X in (("P", P), ("Q", Q)))
     n = len(P)
     _check_pair(where, P, Q)
     forwards = outline.area(P) > 0.0
@@ -179,20 +181,30 @@ def _triangulate(
     units, coarsest, count = _size(where, n, areas, spacing, triangles, scale[0])
     try:
         first = compatible_overlay.common(*drawn)
-    except compatible_overlay.OverlayError as error:
-        remedy = "Move the corners there apart, or off the line."
-        checks.fail(
-            where, "P and Q", "polygons whose corners are clearly off a line", str(error), None, remedy
-        )
+    except compatible_overlay.OverlayError:
+        _report_narrow(where, P, Q)
     mesh = compatible_remesh.improve(Mesh(*first, list(range(n))), units, coarsest, count)
     rim = [0]
     while mesh.next[rim[-1]] != 0:
         rim.append(mesh.next[rim[-1]])
+    if not forwards:
+        rim = rim[rim.index(n - 1) :] + rim[: rim.index(n - 1)]  # from the given first corner, too
     number = np.arange(len(mesh.points))
     number[:n] = order
     source, target = (np.ldexp(X, -s) for X, s in zip(mesh.arrays(), scale, strict=True))
     source[:n], target[:n] = P, Q
     return _verified(where, source, target, number[mesh.faces()], number[rim], n)
+
+
+def _report_narrow(where: str, P: Array, Q: Array) -> NoReturn:
+    found = [
+        (d / np.ptp(X, axis=0).max(), d, p, name)
+        for X, name in ((P, "P"), (Q, "Q"))
+        for d, p in (outline.narrowest(X),)
+    ]
+    _, d, p, name = min(found, key=lambda entry: entry[0])
+    got = f"{name} only {d:.3g} wide near ({p[0]:.6g}, {p[1]:.6g})"
+    checks.fail(where, "P and Q", "wide enough for their numbers", got, None, "Widen it there.")
 
 
 def _check_pair(where: str, P: Array, Q: Array) -> None:
@@ -229,7 +241,14 @@ def _size(
     if wanted > compatible_remesh.MOST:
         remedy = "Ask for fewer, then use compatible.subdivide, which makes four of each."
         name = "triangles" if spacing is None else "spacing"
-        checks.fail(where, name, f"enough for at most {compatible_remesh.MOST} triangles", f"about {wanted}", None, remedy)
+        checks.fail(
+            where,
+            name,
+            f"enough for at most {compatible_remesh.MOST} triangles",
+            f"about {wanted}",
+            None,
+            remedy,
+        )
     units = (step, step * np.sqrt(areas[1] / areas[0]))
     return units, 0.25 * float(np.sqrt(areas[0])) / step, count
 

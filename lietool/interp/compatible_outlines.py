@@ -1,7 +1,6 @@
 """Sample two outlines so that their points correspond: evenly by arc length, corners kept."""
 
 from collections.abc import Sequence
-from typing import NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,7 @@ Array = NDArray[np.float64]
 # A turn of the outline by more than this is a corner; those of flattened curves are smaller.
 _SHARP = np.deg2rad(25.0)
 _ALIGNED = 256
+_NEAR = 0.04
 
 
 def sample(
@@ -37,15 +37,15 @@ def sample(
     """
     if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or not 3 <= samples <= 5000:
         checks.fail(where, "samples", "a whole number from 3 to 5000", repr(samples), None)
-    pairs = None if marks is None or not len(marks) else _pairs(where, marks, len(P), len(Q))
+    given = None if marks is None or not len(marks) else _pairs(where, marks, len(P), len(Q))
     turned = [outline.area(X) < 0.0 for X in (P, Q)]
     P, Q = (X[::-1] if t else X for X, t in zip((P, Q), turned, strict=True))
-    if pairs is None:
+    if given is None:
         pairs = np.array([_nearest_start(P, Q)])
     else:
-        for side, X in enumerate((P, Q)):
-            pairs[:, side] = len(X) - 1 - pairs[:, side] if turned[side] else pairs[:, side]
-        _check_order(where, pairs, len(Q))
+        last = np.array([len(P), len(Q)]) - 1
+        pairs = np.where(turned, last - given, given)
+        _check_order(where, given, pairs, len(Q))
     pairs = pairs[np.argsort(pairs[:, 0])]
     whole = [outline.lengths(X).sum() for X in (P, Q)]
     pieces: list[tuple[Array, Array]] = []
@@ -79,39 +79,45 @@ def _pairs(where: str, marks: Sequence[tuple[int, int]], n: int, k: int) -> NDAr
     return pairs.astype(np.intp)
 
 
-def _check_order(where: str, pairs: NDArray[np.intp], k: int) -> None:
-    """Refuse marks that do not follow each other in the same order on both outlines."""
+def _check_order(where: str, given: NDArray[np.intp], pairs: NDArray[np.intp], k: int) -> None:
+    """Refuse marks that do not follow each other in the same order counter-clockwise on both outlines."""
     order = np.argsort(pairs[:, 0])
     steps = np.diff(pairs[order, 1], append=pairs[order[0], 1]) % k
     if steps.sum() == k or len(pairs) < 3:
         return
+    must = "in the same order around P and Q"
     if (k - steps).sum() == k:
-        _out_of_order(where, "marks whose order on Q is the reverse", None, "Mirror Q, or mark other points.")
-    # The first mark of which those before it are in order, but it is not.
-    ahead = np.cumsum((pairs[order, 1] - np.roll(pairs[order, 1], 1))[1:] % k)
-    (i,) = checks.first(ahead >= k)
-    bad = int(order[i + 1])
-    got = f"mark {bad}, ({pairs[bad, 0]}, {pairs[bad, 1]}) both counted counter-clockwise, out of order"
-    _out_of_order(where, got, (bad,), "Leave it out or correct it.")
-
-
-def _out_of_order(where: str, got: str, index: tuple[int, ...] | None, remedy: str) -> NoReturn:
-    checks.fail(where, "marks", "in the same order around P and Q", got, index, remedy)
+        remedy = "The map would be a reflection: mirror Q, or mark other points."
+        checks.fail(where, "marks", must, "the reverse order on Q", None, remedy)
+    # The first mark that lies behind one before it.
+    (i,) = checks.first(np.cumsum(steps) >= k)
+    bad = int(order[min(i + 1, len(order) - 1)])
+    got = f"({given[bad, 0]}, {given[bad, 1]})"
+    checks.fail(where, "marks", must, got, (bad,), "Leave it out or correct it.")
 
 
 def _nearest_start(P: Array, Q: Array) -> tuple[int, int]:
     """Return a point of P and one of Q that correspond when the outlines are laid on each other."""
+    start = int(np.argmax(_turns(P)))
     even = []
-    for X in (P, Q):
-        piece = _Piece(X, 0, 0, 1.0)
-        points = piece.at(np.arange(_ALIGNED) / _ALIGNED)
+    for X in (np.roll(P, -start, axis=0), Q):
+        points = _Piece(X, 0, 0, 1.0).at(np.arange(_ALIGNED) / _ALIGNED)
         z = points[:, 0] + 1j * points[:, 1]
         even.append((z - z.mean()) / np.sqrt(abs(outline.area(X))))
     # The sum of squared distances for each shift, but for a constant, by the convolution theorem.
     match = np.fft.ifft(np.fft.fft(even[0]).conj() * np.fft.fft(even[1])).real
-    shift = int(np.argmax(match))
     s = np.concatenate([[0.0], np.cumsum(outline.lengths(Q))])
-    return 0, int(np.argmin(np.abs(s[:-1] / s[-1] - shift / _ALIGNED)))
+    apart = np.abs(s[:-1] / s[-1] - np.argmax(match) / _ALIGNED)
+    apart = np.minimum(apart, 1.0 - apart)
+    # A corner belongs to a corner, if there is one near by.
+    corner = (_turns(Q) > _SHARP) & (apart < _NEAR)
+    return start, int(np.argmin(np.where(corner, apart - 1.0, apart)))
+
+
+def _turns(points: Array) -> Array:
+    """Return by how much an outline turns at each of its points, in radians."""
+    z = points[:, 0] + 1j * points[:, 1]
+    return np.abs(np.angle((np.roll(z, -1) - z) * (z - np.roll(z, 1)).conj()))
 
 
 class _Piece:

@@ -42,7 +42,7 @@ def lengths(points: Array) -> Array:
     return np.hypot(*(np.roll(points, -1, axis=0) - points).T)
 
 
-def check(where: str, name: str, points: ArrayLike) -> Array:
+def check(where: str, name: str, points: ArrayLike, remedy: str = "Move or leave out points there.") -> Array:
     """Return a simple polygon as an array of its own, or say where it is not one.
 
     Parameters
@@ -53,6 +53,8 @@ def check(where: str, name: str, points: ArrayLike) -> Array:
         Its argument, for the message.
     points : (n, 2)
         The corners in order, the first not repeated at the end; in either direction.
+    remedy : str
+        What to do where it crosses itself, for the message.
 
     Returns
     -------
@@ -70,7 +72,7 @@ def check(where: str, name: str, points: ArrayLike) -> Array:
         checks.fail(where, name, wanted, f"shape {array.shape}", None, "Give the corners of one outline.")
     _check_distinct(where, name, array)
     _check_turns(where, name, array)
-    _check_crossings(where, name, array)
+    _check_crossings(where, name, array, remedy)
     return array
 
 
@@ -86,7 +88,9 @@ def _check_distinct(where: str, name: str, points: Array) -> None:
     pairs = np.sort(np.stack([order[same], order[same + 1]], axis=1), axis=1)
     i, j = (int(k) for k in pairs[np.lexsort(pairs.T[::-1])[0]])
     closing = i == 0 and j == len(points) - 1
-    remedy = "Leave out the last point: outlines close by themselves." if closing else "Leave one of them out."
+    remedy = (
+        "Leave out the last point: outlines close by themselves." if closing else "Leave one of them out."
+    )
     got = f"point {i} again as point {j}, {_at(points[j])},"
     checks.fail(where, name, "an outline of distinct points", got, (j,), remedy)
 
@@ -104,7 +108,7 @@ def _check_turns(where: str, name: str, points: Array) -> None:
         checks.fail(where, name, "a simple polygon", got, (i,), "Leave the spike out.")
 
 
-def _check_crossings(where: str, name: str, points: Array) -> None:
+def _check_crossings(where: str, name: str, points: Array, remedy: str) -> None:
     n = len(points)
     after = np.roll(points, -1, axis=0)
     low, high = np.minimum(points, after), np.maximum(points, after)
@@ -119,7 +123,7 @@ def _check_crossings(where: str, name: str, points: Array) -> None:
         bad = _meet(points[i], after[i], points[j], after[j])
         if bad.any():
             k = int(np.argmax(bad))
-            _report_crossing(where, name, points, int(i[k]), int(j[k]))
+            _report_crossing(where, name, points, int(i[k]), int(j[k]), remedy)
 
 
 def _meet(a: Array, b: Array, c: Array, d: Array) -> NDArray[np.bool_]:
@@ -129,7 +133,7 @@ def _meet(a: Array, b: Array, c: Array, d: Array) -> NDArray[np.bool_]:
     )
 
 
-def _report_crossing(where: str, name: str, points: Array, i: int, j: int) -> None:
+def _report_crossing(where: str, name: str, points: Array, i: int, j: int, remedy: str) -> None:
     n = len(points)
     a, b, c, d = points[i], points[(i + 1) % n], points[j], points[(j + 1) % n]
     u, v, w = b - a, d - c, c - a
@@ -137,4 +141,30 @@ def _report_crossing(where: str, name: str, points: Array, i: int, j: int) -> No
     place = a + u * ((w[0] * v[1] - w[1] * v[0]) / det) if det else c
     edges = f"{i}-{(i + 1) % n} and {j}-{(j + 1) % n}"
     got = f"edges {edges} that meet near {_at(place)},"
-    checks.fail(where, name, "a simple polygon", got, (i,), "Move or leave out points there.")
+    checks.fail(where, name, "a simple polygon", got, (i,), remedy)
+
+
+def narrowest(points: Array) -> tuple[float, Array]:
+    """Return the least distance of a corner of a polygon from an edge that it is no end of, and that corner.
+
+    Parameters
+    ----------
+    points : (n, 2)
+        n at least 4.
+
+    Returns
+    -------
+    distance : float
+    corner : (2,)
+    """
+    n = len(points)
+    z = points[:, 0] + 1j * points[:, 1]
+    side = np.roll(z, -1) - z
+    best = (np.inf, points[0])
+    for i in range(n):
+        along = np.clip(((z[i] - z) * side.conj()).real / np.abs(side) ** 2, 0.0, 1.0)
+        apart = np.abs(z[i] - z - along * side)
+        apart[[i, i - 1]] = np.inf
+        if apart.min() < best[0]:
+            best = (float(apart.min()), points[i])
+    return best
