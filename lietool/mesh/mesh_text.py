@@ -1,4 +1,4 @@
-"""What of a mesh file is passed on: positions and faces, each line looked at, so that an error can name it."""
+"""What of a mesh file is passed on: positions and faces, each line looked at, so that errors name it."""
 
 import re
 from collections.abc import Iterator

@@ -90,8 +90,9 @@ def _check_data(place: Place, text: str, data: str) -> None:
     else:
         if not left:
             return
-    start = text.find(data[:40])
-    line = text.count("\n", 0, max(start, 0) + at) + 1 if start >= 0 else None
+    # What was read has spaces where the file may have new lines.
+    found = re.search(r"\s".join(map(re.escape, re.split(r"\s", data[:60]))), text)
+    line = text.count("\n", 0, found.start() + at) + 1 if found else None
     place.fail("a drawing whose paths are whole", f"{data[max(0, at - 8) : at + 12].strip()!r}", line)
 
 
@@ -173,7 +174,7 @@ def _only(place: Place, closed: list[tuple[str, Array]], outer: bool) -> Array:
     for k, (other, inner) in enumerate(closed):
         if k == largest:
             continue
-        x, y = inner[0] * [1.0, -1.0]
+        x, y = inner[0, 0], 0.0 - inner[0, 1]
         at = f"near x = {x:.6g}, y = {y:.6g}"
         if not (np.all(inner >= low) and np.all(inner <= high) and _holds(points, inner[0])):
             got = f"{label} and, beside it, {other} {at}"

@@ -33,7 +33,7 @@ def orientation(a: Array, b: Array, c: Array) -> NDArray[np.int8]:
     left = (a[..., 0] - c[..., 0]) * (b[..., 1] - c[..., 1])
     right = (a[..., 1] - c[..., 1]) * (b[..., 0] - c[..., 0])
     det = np.asarray(left - right)
-    sign = np.sign(det).astype(np.int8)
+    sign = np.array(np.sign(det), np.int8)
     unsure = np.abs(det) <= _BOUND * (np.abs(left) + np.abs(right)) + _TINY
     if np.any(unsure):
         a, b, c = (np.broadcast_to(x, (*det.shape, 2))[unsure] for x in (a, b, c))
