@@ -15,7 +15,7 @@ _ROOT = paths.PACKAGE.parent
 # What stands below everything, and imports only the standard library.
 _BASE = {"paths", "atomic", "cache", "lietool"}
 # Imported inside functions only, wherever they are allowed: each takes a noticeable part of a second.
-_SLOW = {"matplotlib", "scipy", "skimage", "trimesh", "imageio", "rich", "numba"}
+_SLOW = {"matplotlib", "scipy", "skimage", "trimesh", "svgelements", "imageio", "rich", "numba"}
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ RULES = {
     "figure": _rule("declaration parameter paths", ours_lazily="figures"),
     "cli": _rule("figure paths lietool", "click", "rich", ours_lazily="verbs"),
     "lie": _rule("lie", "numpy", "scipy"),
-    "mesh": _rule("mesh lie", "numpy", "scipy trimesh skimage"),
+    "mesh": _rule("mesh lie", "numpy", "scipy trimesh skimage svgelements"),
     "interp": _rule("interp lie mesh", "numpy", "scipy skimage"),
     "deform": _rule("deform lie mesh", "numpy", "scipy skimage"),
     "bench": _rule("bench lie", "numpy mpmath", "scipy pytransform3d"),
