@@ -2,8 +2,8 @@
 
 The rotation R_i of a local map A_i = R_i S_i fixes its angle up to full turns.
 Two triangles with a common edge agree on where that edge goes, and with S_i positive neither map turns it
-by a right angle or more away from R_i: their angles, rightly chosen, differ by less than pi.  From one triangle the
-choice spreads over the mesh.  Round a hole it may fail to close, and then there is no such choice.
+by a right angle or more away from R_i: their angles, rightly chosen, differ by less than pi.  From one
+triangle the choice spreads over the mesh.  Round a hole it may fail to close, and then there is none.
 """
 
 from collections.abc import Mapping
@@ -42,8 +42,8 @@ def consistent(
     Raises
     ------
     ValueError
-        If the differences round a closed loop of triangles do not sum to zero, two prescribed numbers of turns
-        contradict each other, or there is no such triangle.
+        If the differences round a closed loop of triangles do not sum to zero, two prescribed numbers of
+        turns contradict each other, or there is no such triangle.
     """
     where = "angles.consistent"
     principal = checks.array(where, "principal", principal, ())

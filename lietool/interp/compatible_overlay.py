@@ -12,6 +12,7 @@ turn (Klincsek's algorithm with the crossings as weights).
 """
 
 import numpy as np
+from numpy.lib.stride_tricks import as_strided
 from numpy.typing import NDArray
 
 from lietool.mesh.predicates import orientation
@@ -91,19 +92,38 @@ def _pair(P: Array, Q: Array, clearance: float) -> tuple[Chords, Chords]:
 
 
 class _Shapes:
-    """Costs of the triangles (i, k, j) of a polygon, from its coordinates."""
+    """Costs of the triangles (i, k, j) of a polygon, i < k < j, for all i and k at once."""
 
     def __init__(self, points: Array) -> None:
-        self.z = points[:, 0] + 1j * points[:, 1]
+        self.x, self.y = (c - c[:, None] for c in points.T.copy())  # [i, j]: from i to j
+        self.squares = self.x**2 + self.y**2
 
-    def cost(self, i: Chords, k: Chords, j: Chords) -> Array:
-        a, b, c = self.z[i], self.z[k], self.z[j]
-        det = ((b - a).conj() * (c - a)).imag
-        sides = abs(b - a) ** 2 + abs(c - b) ** 2 + abs(a - c) ** 2
+    def cost(self, span: int) -> Array:
+        """Return the costs, shape (n - span, span - 1), for j = i + span."""
+        x, y = _towards(self.x, span), _towards(self.y, span)
+        det = _diagonal(self.y, span) * x - _diagonal(self.x, span) * y
+        sides = _diagonal(self.squares, span) + _towards(self.squares, span) + _from(self.squares, span)
         with np.errstate(divide="ignore", invalid="ignore"):
             cost = _SHAPE_WEIGHT * np.log2(sides / det)
         # The sign must be beyond doubt: 1e-13 is far above the rounding of the two products.
         return np.where(det > 1e-13 * sides, cost, np.inf)
+
+
+def _towards(matrix: Array, span: int) -> Array:
+    """Return the entries (i, k) for all k from i + 1 to i + span - 1, without copying."""
+    n = len(matrix)
+    return as_strided(matrix[:, 1:], (n - span, span - 1), (8 * n + 8, 8), writeable=False)
+
+
+def _from(matrix: Array, span: int) -> Array:
+    """Return the entries (i + span, k) for the same k; a symmetric matrix has the same at (k, i + span)."""
+    n = len(matrix)
+    return as_strided(matrix[span:, 1:], (n - span, span - 1), (8 * n + 8, 8), writeable=False)
+
+
+def _diagonal(matrix: Array, span: int) -> Array:
+    """Return the entries (i, i + span) as a column."""
+    return np.diagonal(matrix, span)[:, None]
 
 
 def _best(points: Array, seen: NDArray[np.bool_], weight: Array, shapes: _Shapes) -> Chords:
@@ -112,19 +132,16 @@ def _best(points: Array, seen: NDArray[np.bool_], weight: Array, shapes: _Shapes
     cost = np.full((n, n), np.inf)
     choice = np.zeros((n, n), np.intp)
     edge = np.arange(n - 1)
-    cost[edge, edge + 1] = 0.0
+    cost[edge, edge + 1] = cost[edge + 1, edge] = 0.0
     for span in range(2, n):
-        i = np.arange(n - span)[:, None]
-        k = i + np.arange(1, span)
-        j = i + span
-        total = cost[i, k] + cost[k, j] + shapes.cost(i, k, j)
+        total = _towards(cost, span) + _from(cost, span) + shapes.cost(span)
         pick = np.argmin(total, axis=1)
-        i, j, rows = i[:, 0], j[:, 0], np.arange(n - span)
+        i = np.arange(n - span)
+        j = i + span
         closed = span == n - 1
-        cost[i, j] = np.where(
-            closed | seen[i, j], total[rows, pick] + (0.0 if closed else weight[i, j]), np.inf
-        )
-        choice[i, j] = k[rows, pick]
+        cost[i, j] = np.where(closed | seen[i, j], total[i, pick] + (0.0 if closed else weight[i, j]), np.inf)
+        cost[j, i] = cost[i, j]
+        choice[i, j] = i + 1 + pick
     if not np.isfinite(cost[0, n - 1]):
         raise OverlayError
     chords, stack = [], [(0, n - 1)]
@@ -140,32 +157,36 @@ def _best(points: Array, seen: NDArray[np.bool_], weight: Array, shapes: _Shapes
 def _visible(points: Array, clearance: float) -> NDArray[np.bool_]:
     """Return which diagonals lie inside a polygon, well clear of its other corners."""
     n = len(points)
-    z = points[:, 0] + 1j * points[:, 1]
-    after, before = np.roll(z, -1), np.roll(z, 1)
-    convex = ((z - before).conj() * (after - z)).imag > 0.0
-    size = np.ptp(points, axis=0).max()
+    x, y = (c - c[:, None] for c in points.T.copy())  # [i, j]: from i to j
+    margin = clearance * np.ptp(points, axis=0).max()
+    this, after = np.arange(n), np.roll(np.arange(n), -1)
+    before = np.roll(after, 2)
+    ux, uy = x[this, after], y[this, after]
+    # [j, k]: whether point j is on the left of the edge from k.
+    ahead = (ux[:, None] * y - uy[:, None] * x > 0.0).T.copy()
+    turn = x[before, this] * uy - y[before, this] * ux
     seen = np.zeros((n, n), bool)
-    ahead = ((after - z).conj() * (z[:, None] - z)).imag  # [j, k]: side of point j of the edge from k
     for i in range(n - 2):
         j = np.arange(i + 2, n - (i == 0))
-        d = z[j] - z[i]
-        left, right = ((after[i] - z[i]).conj() * d).imag > 0.0, ((z[i] - before[i]).conj() * d).imag > 0.0
-        inside = (left & right) if convex[i] else (left | right)
-        j, d = j[inside], d[inside]
-        side = (d.conj()[:, None] * (z - z[i])).imag / np.abs(d)[:, None]
-        margin = clearance * size
-        # Corners beside the diagonal, at distances that count; a corner on it blocks it.
-        reach = (d.conj()[:, None] * (z - z[i])).real / (np.abs(d) ** 2)[:, None]
-        touch = (np.abs(side) <= margin) & (reach > 0.0) & (reach < 1.0)
-        rows = np.arange(len(j))
-        touch[:, i] = False
-        touch[rows, j] = False
+        left = ux[i] * y[i, j] - uy[i] * x[i, j] > 0.0
+        right = x[before[i], i] * y[i, j] - y[before[i], i] * x[i, j] > 0.0
+        j = j[(left & right) if turn[i] > 0.0 else (left | right)]
+        dx, dy = x[i, j, None], y[i, j, None]
+        side = dx * y[i] - dy * x[i]  # of all corners of each diagonal, times its length
         sign = side > 0.0
-        across = (sign != np.roll(sign, -1, axis=1)) & ((ahead[i] > 0.0) != (ahead[j] > 0.0))
+        across = (sign != sign[:, after]) & (ahead[i] != ahead[j])
+        rows = np.arange(len(j))
         across[:, [i, i - 1]] = False
-        across[rows, j] = False
-        across[rows, j - 1] = False
-        seen[i, j] = ~(touch.any(axis=1) | across.any(axis=1))
+        across[rows, j] = across[rows, j - 1] = False
+        # Corners beside the diagonal block it, too.
+        row, corner = np.nonzero(np.abs(side) <= margin * np.hypot(dx, dy))
+        reach = dx[row, 0] * x[i, corner] + dy[row, 0] * y[i, corner]
+        beside = (
+            (reach > 0.0) & (reach < dx[row, 0] ** 2 + dy[row, 0] ** 2) & (corner != i) & (corner != j[row])
+        )
+        blocked = across.any(axis=1)
+        blocked[row[beside]] = True
+        seen[i, j] = ~blocked
     return seen
 
 

@@ -219,6 +219,8 @@ def improve(mesh: Mesh, spacing: tuple[float, float], coarsest: float, triangles
                 break
             coarse *= max(0.5, (count / triangles) ** 0.5)
     for _ in range(2):
+        if triangles is not None:  # smoothing lets some be removed
+            coarse *= float(np.clip((len(work.mesh.apex) / 3 / triangles) ** 0.5, 0.8, 1.0))
         work.step(coarse, corners, most)
     work.relax(8, 12)
     return work.mesh.compact(corners)

@@ -1,8 +1,8 @@
 """What the user asks of an interpolation besides its maps: loci, edges, directions, the barycentre.
 
 A constraint is exact where its weight is None; else its squared violation, times the weight, is added to the
-energy.  Where something goes is a path: a function from times (k,) to points (k, 2); `line`, `polyline`, `spline`,
-`bspline` and `arc` make some.
+energy.  Where something goes is a path: a function from times (k,) to points (k, 2); `line`, `polyline`,
+`spline`, `bspline` and `arc` make some.
 
 With v = x + i y every constraint but one says that a complex-linear form of the vertices has some value; that
 an edge has only its direction given is a real condition.
@@ -47,7 +47,7 @@ class Edge:
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """The line through two vertices keeps its direction, n(t) . (v_k - v_l) = 0; its length and sense are free.
+    """The line through two vertices keeps its direction, n(t) . (v_k - v_l) = 0; length and sense are free.
 
     `normal` is a vector (2,), or a path of vectors.
     """
@@ -128,7 +128,7 @@ def bspline(control: ArrayLike, degree: int = 3) -> Path:
 
 
 def arc(center: ArrayLike, start: ArrayLike, angle: float, growth: float = 1.0) -> Path:
-    """Return the path that turns a point (2,) about a centre by an angle (rad), its distance growing by a factor."""
+    """Return the path that turns a point (2,) about a centre by an angle (rad), while `growth` scales it."""
     c = checks.array("constraint.arc", "center", center, (2,))
     z = checks.array("constraint.arc", "start", start, (2,)) - c
     first = complex(z[0], z[1])
@@ -249,4 +249,4 @@ def _normal(where: str, normal: ArrayLike | Path, t: Array) -> NDArray[np.comple
     size = np.abs(n)
     if not np.all(size > 0.0):
         checks.fail(where, "normal", "a direction, not 0", "0", None)
-    return n / size
+    return (n / size).astype(complex)

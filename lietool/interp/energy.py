@@ -1,4 +1,4 @@
-"""How far a map B is from the map A that it should be: E^P, E^F, E^S, E^R as the quadratic forms that they are.
+"""How far a map B is from the map A that it should be: E^P, E^F, E^S, E^R as quadratic forms.
 
 With B acting as z -> beta z + gamma conj(z), and x = (beta, gamma), a = (those of A), all four are given by a
 Hermitian 2 x 2 matrix G of the triangle:
@@ -109,7 +109,7 @@ def metric(energy: Energy, corners: Array) -> Metric:
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """The error x* Q x - 2 Re(x* r) + c of triangles, Q = [[first, mixed], [conj mixed, second]]; x, r (2, m)."""
+    """The error x* Q x - 2 Re(x* r) + c, with x, r (2, m) and Q = [[first, mixed], [conj mixed, second]]."""
 
     first: Array
     second: Array

@@ -22,7 +22,7 @@ _REMEDIES = {
 
 @dataclass(frozen=True, eq=False)
 class Freedoms:
-    """What the energy does not see: moving each part of the shape, and, for similarities, turning and scaling it.
+    """What the energy does not see: moving each part, and, for similarities, turning and scaling it.
 
     Parameters
     ----------

@@ -185,8 +185,8 @@ def prepare(
     Raises
     ------
     ValueError
-        If the shapes do not fit together, a triangle has no area or is turned over, angles do not close round a
-        hole, or the constraints leave a freedom open.
+        If the shapes do not fit together, a triangle has no area or is turned over, angles do not close round
+        a hole, or the constraints leave a freedom open.
     """
     where = "shape.prepare"
     P, Q, F, A = _read(where, source, target, F)
@@ -281,7 +281,7 @@ def _frames(
 def _factor(prepared: Prepared, forms: list[energy.Form], rows: constraint.Rows, frame: int) -> system.Factor:
     at, matrix = prepared.layout, prepared.pattern
     parts = zip(prepared.sums, forms, strict=True)
-    entries = sum(matrix.add(part.blocks(form)) for part, form in parts)
+    entries: NDArray[Any] = np.sum([matrix.add(part.blocks(form)) for part, form in parts], axis=0)
     if all(part.energy.is_rigid for part in prepared.sums):
         # E^F and E^P treat x and y alike: what is left of the imaginary part is rounding.
         entries = entries.real
@@ -312,7 +312,7 @@ def _factor(prepared: Prepared, forms: list[energy.Form], rows: constraint.Rows,
 
 
 def _kinds(rows: constraint.Rows) -> tuple[Index, Index, Index]:
-    """The conditions that take a vertex out, those that go into the matrix, and those that stand beside it."""
+    """The conditions that take a vertex out, that go into the matrix, and that stand beside it."""
     one = np.array([len(c) == 1 for c in rows.columns], bool)
     exact = np.isinf(rows.weights)
     few = np.array([len(c) > 0 for c in rows.columns], bool)
@@ -342,7 +342,7 @@ def _read(
         sides = np.swapaxes(V[F[:, :2]] - V[F[:, 2:]], -1, -2)
         triangle.checks_degenerate(where, name, sides)
     E, D = (np.swapaxes(V[F[:, :2]] - V[F[:, 2:]], -1, -2) for V in (P, Q))
-    A = D @ np.linalg.inv(E)
+    A: Array = D @ np.linalg.inv(E)
     over = np.linalg.det(A) <= 0.0
     if over.any():
         k = int(np.argmax(over))
@@ -402,7 +402,7 @@ def _default(
         found.append(constraint.Locus(vertex, constraint.line(P[vertex], Q[vertex])))
         if not free.loose[k]:
             continue
-        owner = int(np.argmax((F == vertex).any(axis=1)))
+        owner = int(np.argmax(np.any(F == vertex, axis=1)))
         other = int(next(v for v in F[owner] if v != vertex))
         found.append(
             constraint.Edge(other, vertex, _carried(A[owner], theta[owner], homotopy, P[other] - P[vertex]))

@@ -4,9 +4,9 @@ The minimum of v* H v - 2 Re(v* b) under conditions U v = d is
 
     H v + U* mu = b,    U v - Delta mu = d,
 
-with Delta = 0 for an exact condition and 1/c for one of weight c.  Vertices that follow a path exactly are taken out,
-conditions on few vertices with a weight go into H, and the others stand beside the matrix: they are few, and each
-costs one more right side.  A condition on a direction is real, and then the system is written in x and y.
+with Delta = 0 for an exact condition and 1/c for one of weight c.  Vertices that follow a path exactly are
+taken out, conditions on few vertices with a weight go into H, and the others stand beside the matrix: they
+are few, and each costs one more right side.  A condition on a direction is real, and then the system is written in x and y.
 
 Where nothing in H holds a part of the shape, anchors do: a weight on one or two vertices, which a further
 condition takes back again, so that H can be factored whatever holds the shape.
@@ -15,6 +15,7 @@ The order of elimination is found once.  With it the factors of a new frame have
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,15 +52,15 @@ class Layout:
     inner: tuple[Index, NDArray[np.int32], NDArray[np.int32]]
     cross: tuple[Index, NDArray[np.int32], NDArray[np.int32]]
 
-    def source(self, entries: NDArray) -> NDArray:
+    def source(self, entries: NDArray[Any]) -> NDArray[Any]:
         """Return the entries of which the matrix is made."""
         return np.concatenate([entries.real, entries.imag, -entries.imag]) if self.real else entries
 
-    def split(self, v: Complex) -> NDArray:
+    def split(self, v: Complex) -> NDArray[Any]:
         """Return the unknowns of vertices (n, ...)."""
         return np.concatenate([v.real, v.imag]) if self.real else v
 
-    def join(self, z: NDArray) -> Complex:
+    def join(self, z: NDArray[Any]) -> Complex:
         """Return the vertices of unknowns."""
         return z[: self.count] + 1j * z[self.count :] if self.real else z.astype(complex, copy=False)
 
@@ -76,7 +77,7 @@ def layout(matrix: Pattern, fixed: Index, real: bool) -> Layout:
         data = np.arange(first + 1, first + size + 1)
         return csc_array((data, matrix.indices, matrix.indptr), (n, n))
 
-    whole = numbered(0)
+    whole: Any = numbered(0)
     if real:
         whole = vstack(
             [beside([numbered(0), numbered(2 * size)]), beside([numbered(size), numbered(0)])], format="csc"
@@ -87,13 +88,13 @@ def layout(matrix: Pattern, fixed: Index, real: bool) -> Layout:
     free = free[_order(csc_array(whole[free][:, free]))]
     parts = []
     for columns in (free, fixed):
-        part = csc_array(whole[free][:, columns])
+        part: Any = csc_array(whole[free][:, columns])
         part.sort_indices()
         parts.append((part.data - 1, part.indices.astype(np.int32), part.indptr.astype(np.int32)))
     return Layout(n, real, free, fixed, parts[0], parts[1])
 
 
-def _order(pattern) -> Index:  # noqa: ANN001 - a sparse array of SciPy, which is imported where it is used
+def _order(pattern: Any) -> Index:
     """Return an order of elimination for a symmetric pattern: minimum degree, as SuperLU finds it."""
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
@@ -133,13 +134,13 @@ class Factor:
         self.beside = self._base(np.conj(self.rows.T)) if len(rows) else np.zeros((n, 0))
         self.schur = self.rows @ self.beside + np.diag(delta)
 
-    def _base(self, b: NDArray) -> NDArray:
+    def _base(self, b: NDArray[Any]) -> NDArray[Any]:
         b = np.ascontiguousarray(b)
         if np.iscomplexobj(b) and not np.iscomplexobj(self.inner.data):
             return self.solver.solve(b.real) + 1j * self.solver.solve(b.imag)
         return self.solver.solve(b.astype(self.inner.dtype, copy=False))
 
-    def _bordered(self, b: NDArray, d: NDArray) -> tuple[NDArray, NDArray]:
+    def _bordered(self, b: NDArray, d: NDArray[Any]) -> tuple[NDArray, NDArray[Any]]:
         z = self._base(b)
         if not len(self.rows):
             return z, d
@@ -172,10 +173,10 @@ class Factor:
 
     def _residual(
         self, z: NDArray, mu: NDArray, b: NDArray, d: NDArray
-    ) -> tuple[Array, tuple[NDArray, NDArray]]:
+    ) -> tuple[Array, tuple[NDArray, NDArray[Any]]]:
         rest = b - self.inner @ z - np.conj(self.rows.T) @ mu
         miss = d - self.rows @ z + self.delta[:, None] * mu
-        size = np.abs(self.inner) @ np.abs(z) + np.abs(b)
+        size = abs(self.inner) @ np.abs(z) + np.abs(b)
         scale = np.maximum(size.max(axis=0, initial=0.0), 1e-300)
         residual = np.abs(rest).max(axis=0, initial=0.0) / scale
         reach = np.maximum(np.abs(d).max(axis=0, initial=0.0), np.abs(z).max(axis=0, initial=0.0))
@@ -183,10 +184,10 @@ class Factor:
         return np.maximum(residual, miss_size), (rest, miss)
 
 
-def dense(rows: Rows, frame: int, chosen: Index, count: int, real: bool) -> NDArray:
+def dense(rows: Rows, frame: int, chosen: Index, count: int, real: bool) -> NDArray[Any]:
     """Return chosen conditions of one frame as the rows of a matrix on the unknowns."""
     width = 2 * count if real else count
-    out: list[NDArray] = []
+    out: list[NDArray[Any]] = []
     for k in chosen:
         f = np.zeros(count, complex)
         factor = rows.factors[k][frame if len(rows.factors[k]) > 1 else 0]
@@ -203,9 +204,9 @@ def dense(rows: Rows, frame: int, chosen: Index, count: int, real: bool) -> NDAr
     return np.reshape(out, (-1, width))
 
 
-def targets(rows: Rows, chosen: Index, real: bool) -> NDArray:
+def targets(rows: Rows, chosen: Index, real: bool) -> NDArray[Any]:
     """Return what chosen conditions ask for, in the order of `dense`; shape (rows, T)."""
-    out: list[NDArray] = []
+    out: list[NDArray[Any]] = []
     for k in chosen:
         value = rows.values[k]
         out += [value] if not real else [value.real] if rows.real[k] else [value.real, value.imag]
@@ -214,7 +215,7 @@ def targets(rows: Rows, chosen: Index, real: bool) -> NDArray:
 
 def deltas(rows: Rows, chosen: Index, real: bool) -> Array:
     """Return 1 / weight of chosen conditions, in the order of `dense`."""
-    out: list[float] = []
+    out: list[Any] = []
     for k in chosen:
         out += [1.0 / rows.weights[k]] * (1 if not real or rows.real[k] else 2)
-    return np.array(out)
+    return np.array(out, float)

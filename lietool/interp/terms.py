@@ -1,17 +1,18 @@
 """The energy of a whole shape: one Hermitian form for each triangle, summed into a sparse matrix.
 
-With v = x + i y the map of a triangle depends complex-linearly on its corners, (beta, gamma) = K v, so that every
-energy of `energy` is a Hermitian form in n complex numbers instead of a symmetric one in 2 n real ones.
+With v = x + i y the map of a triangle depends complex-linearly on its corners, (beta, gamma) = K v, so that
+every energy of `energy` is a Hermitian form in n complex numbers instead of a symmetric one in 2 n reals.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lietool.interp import energy, triangle
-from lietool.interp.energy import Energy
+from lietool.interp.energy import Energy, Form, Metric
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -35,7 +36,7 @@ class Term:
 
     energy: Energy
     K: Complex
-    G: energy.Metric
+    G: Metric
     maps: Callable[[float], Complex]
 
     def coordinates(self, corners: Complex) -> Complex:
@@ -43,11 +44,11 @@ class Term:
         u = corners[:2] - corners[2]
         return self.K[:, 0] * u[0] + self.K[:, 1] * u[1]
 
-    def form(self, t: float) -> energy.Form:
+    def form(self, t: float) -> Form:
         """Return the errors at a time as forms in the coordinates of the maps."""
         return energy.form(self.energy, self.G, self.maps(t))
 
-    def blocks(self, form: energy.Form) -> Complex:
+    def blocks(self, form: Form) -> Complex:
         """Return the Hermitian 3 x 3 matrix of every triangle; shape (3, 3, m)."""
         K = self.K
         U = form.first * K[0] + form.mixed * K[1]
@@ -63,14 +64,14 @@ class Term:
             M[j, i] = np.conj(M[i, j])
         return M
 
-    def pull(self, form: energy.Form) -> Complex:
+    def pull(self, form: Form) -> Complex:
         """Return the right side of every triangle; shape (3, m)."""
         b = np.conj(self.K[0]) * form.r[0] + np.conj(self.K[1]) * form.r[1]
         return np.concatenate([b, -b.sum(axis=0, keepdims=True)])
 
 
 def sides_to_map(corners: Complex) -> Complex:
-    """Return the matrices K (2, 2, m) of triangles with corners (3, m): where two sides go gives (beta, gamma).
+    """Return the matrices K (2, 2, m) of triangles (3, m): where two sides go gives (beta, gamma).
 
     Book: (5.2)
     """
@@ -109,7 +110,7 @@ class Pattern:
         """The size of the matrix."""
         return len(self.indptr) - 1
 
-    def add(self, blocks: NDArray, at: Index | None = None) -> NDArray:
+    def add(self, blocks: NDArray, at: Index | None = None) -> NDArray[Any]:
         """Return the entries of the matrix that is the sum of all blocks."""
         place = (self.place if at is None else at).ravel()
         size = len(self.indices)

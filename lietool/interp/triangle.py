@@ -174,7 +174,7 @@ def logexp(A: ArrayLike, t: ArrayLike, theta: ArrayLike | None = None) -> Array:
     a, b = coordinates(A)
     angle = _angle("triangle.logexp", a, theta)
     t = _time("triangle.logexp", t, A.ndim)[..., 0, 0]
-    # The eigenvalues of S are |a| + |b| and |a| - |b|; the difference of the second would cancel, det does not.
+    # The eigenvalues of S are |a| + |b| and |a| - |b|; the second would cancel, det does not.
     log_det = np.log(_det(A))
     half_spread = np.log(np.abs(a) + np.abs(b)) - 0.5 * log_det
     turn = np.exp(1j * t * angle + 0.5 * t * log_det)
@@ -279,7 +279,7 @@ def coordinates(A: Array) -> tuple[Complex, Complex]:
     return 0.5 * (p + s + 1j * (r - q)), 0.5 * (p - s + 1j * (r + q))
 
 
-def matrix(a: Complex, b: Complex) -> Array:
+def matrix(a: Complex | Array, b: Complex | Array) -> Array:
     """Return the matrices (..., 2, 2) that act as z -> a z + b conj(z)."""
     a, b = np.broadcast_arrays(a, b)
     rows = [a.real + b.real, b.imag - a.imag, a.imag + b.imag, a.real - b.real]

@@ -4,6 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
+BROKEN = (ArithmeticError, AttributeError, LookupError, NameError, RuntimeError, TypeError, ValueError)
+"""What the libraries that read files raise for broken ones, beside errors of their own."""
+
 _MOST = 512 * 1024 * 1024
 
 
@@ -13,6 +16,10 @@ class Place:
 
     where: str
     path: Path
+
+    def cause(self, error: Exception) -> str:
+        """Return the first line of what another library said."""
+        return next(iter(str(error).strip().splitlines()), type(error).__name__)
 
     def fail(self, must: str, got: str, line: int | None = None, remedy: str = "") -> NoReturn:
         """Raise the one-line ValueError that names the file and the line."""

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lietool.lie import checks
 from lietool.mesh import mesh_text, topology
-from lietool.mesh.files import Place, read_bytes, read_text
+from lietool.mesh.files import BROKEN, Place, read_bytes, read_text
 from lietool.mesh.predicates import orientation
 
 Array = NDArray[np.float64]
@@ -174,11 +174,13 @@ def _load(place: Place) -> tuple[Array, Ints]:
     import trimesh
 
     try:
-        mesh = trimesh.load_mesh(io.BytesIO(data), file_type=ending[1:], process=False, maintain_order=True)
+        with np.errstate(invalid="raise", over="raise"):
+            mesh = trimesh.load_mesh(
+                io.BytesIO(data), file_type=ending[1:], process=False, maintain_order=True
+            )
         V, F = np.asarray(mesh.vertices, float), np.asarray(mesh.faces)
-    except (ValueError, IndexError, KeyError, TypeError, AttributeError, NotImplementedError) as error:
-        reason = str(error).strip().splitlines()[:1]
-        place.fail(f"a mesh, {ending}, that trimesh reads", f"an error, {reason[0] if reason else 'unnamed'}")
+    except BROKEN as error:
+        place.fail(f"a mesh, {ending}, that trimesh reads", f"an error, {place.cause(error)}")
     if V.ndim != 2 or not len(V) or F.ndim != 2 or not len(F) or F.dtype.kind not in "iu":
         place.fail("a mesh of triangles", "no vertices" if not len(V) else "no faces")
     V = np.pad(V, ((0, 0), (0, 3 - V.shape[1])))

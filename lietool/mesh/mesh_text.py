@@ -71,20 +71,24 @@ def flat_ply(place: Place, data: bytes) -> bytes:
     head, found, body = data.partition(b"end_header")
     if not found:
         place.fail("a mesh whose header has an end, end_header", "none")
-    text = head.decode("ascii", "replace")
+    if not head.isascii() or (not body.isascii() and b"ascii" in head):
+        place.fail("a mesh of plain letters, ASCII", "other bytes")
+    text = head.decode("ascii")
     counts = {name: int(count) for name, count in re.findall(r"^\s*element\s+(\w+)\s+(\d+)", text, re.M)}
     names = re.findall(r"^\s*property\s+\w+\s+(\w+)\s*$", text, re.M)
     if not {"x", "y"} <= set(names):
         place.fail("a mesh whose vertices have x and y", f"{', '.join(names[:6]) or 'no properties'}")
     _check_any(place, counts.get("vertex", 0), counts.get("face", 0))
+    if not re.search(r"^\s*property\s+list\s+\w+\s+\w+\s+vertex_ind(ex|ices)\s*$", text, re.M):
+        place.fail("a mesh whose faces are a list, vertex_indices", "no such property")
     ascii_ = re.search(r"^\s*format\s+ascii", text, re.M) is not None
     if ascii_:
-        _check_ply_lines(place, text, body.decode("ascii", "replace"), sum(counts.values()))
+        _check_ply_lines(place, text, body.decode("ascii"), sum(counts.values()))
     if "z" in names:
         return data
     if not ascii_:
         place.fail("a mesh whose vertices have z as well, as it is binary", "none", remedy="Save it as text.")
-    return _with_z(text, body.decode("ascii", "replace"), counts["vertex"]).encode("ascii")
+    return _with_z(text, body.decode("ascii"), counts["vertex"]).encode("ascii")
 
 
 def _check_ply_lines(place: Place, head: str, body: str, wanted: int) -> None:

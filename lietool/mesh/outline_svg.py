@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lietool.mesh import outline
-from lietool.mesh.files import Place
+from lietool.mesh.files import BROKEN, Place
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def shape(place: Place, text: str, name: str, tolerance: float, outer: bool) -> 
         (label, points)
         for label, ident, path in _paths(place, text)
         if not name or ident == name
-        for points in _polygons(path, tolerance)
+        for points in _polygons(place, label, path, tolerance)
     ]
     if not closed:
         wanted = f"a drawing with a shape of id {name!r}" if name else "a drawing of a closed shape"
@@ -78,6 +78,9 @@ def _check_data(place: Place, text: str, data: str) -> None:
         letter = word.upper() if word.isalpha() else ""
         if match is None or (letter and left) or (not letter and not command) or (not at and letter != "M"):
             break
+        # Beyond all use, and squares of such numbers overflow.
+        if any(abs(float(w)) > 1e100 for w in (arc.groups() if arc else [word] if not letter else [])):
+            break
         if letter:
             command, left = letter, _COUNTS[letter]
         elif arc:
@@ -93,7 +96,9 @@ def _check_data(place: Place, text: str, data: str) -> None:
     # What was read has spaces where the file may have new lines.
     found = re.search(r"\s".join(map(re.escape, re.split(r"\s", data[:60]))), text)
     line = text.count("\n", 0, found.start() + at) + 1 if found else None
-    place.fail("a drawing whose paths are whole", f"{data[max(0, at - 8) : at + 12].strip()!r}", line)
+    place.fail(
+        "a drawing whose paths are whole and finite", f"{data[max(0, at - 8) : at + 12].strip()!r}", line
+    )
 
 
 def _paths(place: Place, text: str) -> list[tuple[str, str | None, object]]:
@@ -105,10 +110,8 @@ def _paths(place: Place, text: str) -> list[tuple[str, str | None, object]]:
         shapes = [
             (e, abs(svgelements.Path(e))) for e in drawing.elements() if isinstance(e, svgelements.Shape)
         ]
-    except (ValueError, AttributeError, TypeError, ZeroDivisionError, IndexError, KeyError) as error:
-        place.fail(
-            "a drawing that svgelements reads", str(error).splitlines()[0] if str(error) else "an error"
-        )
+    except BROKEN as error:
+        place.fail("a drawing that svgelements reads", f"an error, {place.cause(error)}")
     found = []
     for element, path in shapes:
         values = element.values or {}
@@ -119,10 +122,13 @@ def _paths(place: Place, text: str) -> list[tuple[str, str | None, object]]:
     return found
 
 
-def _polygons(path: object, tolerance: float) -> list[Array]:
+def _polygons(place: Place, label: str, path: object, tolerance: float) -> list[Array]:
     """Return the subpaths that enclose something, flattened."""
     polygons = []
-    box = path.bbox()  # type: ignore[attr-defined]
+    try:
+        box = path.bbox()  # type: ignore[attr-defined]
+    except BROKEN as error:
+        place.fail("a drawing that svgelements reads", f"an error, {place.cause(error)}")
     if box is None:
         return []
     step = tolerance * max(box[2] - box[0], box[3] - box[1])
@@ -130,6 +136,8 @@ def _polygons(path: object, tolerance: float) -> list[Array]:
         pieces = [_flat(segment, step) for segment in part]
         points = np.concatenate([p for p in pieces if len(p)] or [np.zeros((0, 2))])
         points = np.stack([points[:, 0], 0.0 - points[:, 1]], axis=1)
+        if not np.all(np.abs(points) <= 1e100):
+            place.fail("a drawing of finite coordinates", f"others in {label}")
         if len(points):
             # Ends that meet but for rounding are one point.
             gap = np.hypot(*(points - np.roll(points, -1, axis=0)).T)
@@ -144,6 +152,9 @@ def _flat(segment: object, step: float) -> Array:
     import svgelements as svg
 
     if isinstance(segment, svg.Arc):
+        known = [(p.x, p.y) for p in (segment.start, segment.end, segment.center) if p is not None]
+        if not np.all(np.abs(known) <= 1e100):
+            return np.full((1, 2), np.nan)
         parts = [_flat(curve, step) for curve in segment.as_cubic_curves()]
         return np.concatenate(parts) if parts else np.zeros((0, 2))
     if isinstance(segment, svg.CubicBezier):
@@ -156,6 +167,8 @@ def _flat(segment: object, step: float) -> Array:
     b = np.array([(p.x, p.y) for p in control])
     degree = len(b) - 1
     # Wang's bound: n pieces stray at most degree (degree - 1) / 8 max |second difference| / n^2.
+    if not np.all(np.abs(b) <= 1e100):
+        return b[-1:] + np.nan
     bend = np.hypot(*np.diff(b, 2, axis=0).T).max()
     n = int(
         np.clip(np.ceil(np.sqrt(degree * (degree - 1) / 8.0 * bend / max(step, 1e-300))), 1, _MOST_PIECES)

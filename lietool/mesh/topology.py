@@ -169,7 +169,7 @@ def components(count: int, pairs: Index) -> tuple[int, Index]:
 
 
 def boundary(F: Index) -> list[Index]:
-    """Return the boundary loops of a mesh, each the vertices in the order of its triangles; the longest first.
+    """Return the boundary loops, each the vertices in the order of its triangles; the longest first.
 
     Raises
     ------
