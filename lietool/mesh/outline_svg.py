@@ -152,7 +152,7 @@ def _flat(segment: object, step: float) -> Array:
     import svgelements as svg
 
     if isinstance(segment, svg.Arc):
-        known = [(p.x, p.y) for p in (segment.start, segment.end, segment.center) if p is not None]
+        known = np.array([[*p] for p in (segment.start, segment.end, segment.center) if p], float)
         if not np.all(np.abs(known) <= 1e100):
             return np.full((1, 2), np.nan)
         parts = [_flat(curve, step) for curve in segment.as_cubic_curves()]
