@@ -19,6 +19,17 @@ def letter_outline() -> np.ndarray:
     return (outline - [1.5, 2.0]) / 4.0
 
 
+def letter_triangles() -> np.ndarray:
+    """Return the triangles that fill the outline of the glyph.
+
+    Returns
+    -------
+    ndarray of int, shape (8, 3)
+        Indices of its corners, counter-clockwise.
+    """
+    return np.array(_TRIANGLES)
+
+
 def letter_solid(depth: float = 0.25) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the glyph F as a solid: it stands in the y-z plane and has its thickness along x.
 
@@ -41,7 +52,7 @@ def letter_solid(depth: float = 0.25) -> tuple[np.ndarray, np.ndarray, np.ndarra
     i = np.arange(n)
     j = (i + 1) % n
     walls = np.concatenate([np.stack([i, i + n, j], axis=-1), np.stack([j, i + n, j + n], axis=-1)])
-    triangles = np.array(_TRIANGLES)
+    triangles = letter_triangles()
     faces = np.concatenate([triangles, triangles[:, ::-1] + n, walls])
     side = np.repeat([0, 1, 2], [len(triangles), len(triangles), len(walls)])
     return np.concatenate([front, back]), faces, side

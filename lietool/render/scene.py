@@ -159,6 +159,9 @@ class Label:
     anchor : str
         Which point of the text's box goes there: two letters, "l", "c" or "r"
         and then "b", "c", "t" or "n" (the base line).
+    room : float
+        How far from the point, in page units, the text may be moved to a place that is free of other
+        text and of lines; 0 leaves it where `offset` and `anchor` put it. They say which place is liked best.
     """
 
     text: str
@@ -168,6 +171,7 @@ class Label:
     offset: tuple[float, float] = (0.0, 0.0)
     anchor: str = "cc"
     halo: bool = True
+    room: float = 0.0
 
 
 Record = Surface | Lines | Points | Arrow | Tube | Frame | Label
