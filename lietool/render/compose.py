@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from lietool.render import labels, style
+from lietool.render import labels, placement, style
 from lietool.render.camera import Box, project
 from lietool.render.scene import Label, Picture
 
@@ -61,19 +61,35 @@ def compose(
     ValueError
         If a text is not mathtext, or a colour or an anchor is of no known form.
     """
-    placed = []
     page: Box = (0.0, 0.0, float(picture.size[0]), float(picture.size[1]))
-    for view in picture.views:
-        for record in view.records:
-            if not isinstance(record, Label):
-                continue
-            point = project(view.camera, view.box or page, record.position)[:2]
-            glyphs = store.get(record.text, record.size * unit)
-            x, y = (point + record.offset) * unit + corner + _SHIFT
-            left, top = _anchored(record.anchor, x, image.shape[0] - y, glyphs)
-            _lay(image, record, glyphs, (left, top), unit, picture.paper)
-            placed.append(PlacedLabel(record.text, glyphs.key, _ink_box(glyphs, left, top)))
+    found = [
+        (
+            record,
+            store.get(record.text, record.size * unit),
+            project(view.camera, view.box or page, record.position)[:2],
+        )
+        for view in picture.views
+        for record in view.records
+        if isinstance(record, Label)
+    ]
+    moves = placement.places(
+        [(r, point, _text_box(r, point, glyphs, unit)) for r, glyphs, point in found], picture
+    )
+    placed = []
+    for (record, glyphs, point), move in zip(found, moves, strict=True):
+        x, y = (point + record.offset + move) * unit + corner + _SHIFT
+        left, top = _anchored(record.anchor, x, image.shape[0] - y, glyphs)
+        _lay(image, record, glyphs, (left, top), unit, picture.paper)
+        placed.append(PlacedLabel(record.text, glyphs.key, _ink_box(glyphs, left, top)))
     return tuple(placed)
+
+
+def _text_box(record: Label, point: np.ndarray, glyphs: labels.Glyphs, unit: float) -> np.ndarray:
+    """Left, lower, right, upper edge of the ink where a label is liked best, in page units."""
+    x, y = point + record.offset
+    # In pixels from the anchor, y down.
+    left, top, right, low = _ink_box(glyphs, *_anchored(record.anchor, 0.0, 0.0, glyphs))
+    return np.array([x + left / unit, y - low / unit, x + right / unit, y - top / unit])
 
 
 def _anchored(anchor: str, x: float, y: float, glyphs: labels.Glyphs) -> tuple[int, int]:

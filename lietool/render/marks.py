@@ -96,7 +96,7 @@ def letter(
 
 
 def curved_arrow(points: ArrayLike, color: str, radius: float, head: float = 2.6) -> list[Record]:
-    """Return a round tube along a polyline (n, 3) that ends in an arrow's head; nothing where it has no length."""
+    """Return a round tube along a polyline (n, 3) with an arrow's head; nothing where it has no length."""
     points = np.asarray(points, float)
     steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
     left = np.concatenate([np.cumsum(steps[::-1])[::-1], [0.0]])

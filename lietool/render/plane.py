@@ -109,7 +109,7 @@ class Plane:
         width: float = style.CURVE,
         head: bool = True,
     ) -> list[Record]:
-        """Return the arc of a turn, with an arrow's head where it ends; past a full turn it opens to a spiral.
+        """Return the arc of a turn, with an arrow's head at its end; past a full turn it is a spiral.
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class Plane:
         gap: float = 30.0,
         room: float = 60.0,
     ) -> Label:
-        """Return a label beyond a point, further along a direction; it may move a little to find a free place."""
+        """Return a label beyond a point, further along a direction; it may move a little to be free."""
         along = np.asarray(toward, float)
         length = float(np.linalg.norm(along))
         along = along / length if length > 1e-12 else np.array([0.0, 1.0])
