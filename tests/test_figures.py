@@ -6,6 +6,7 @@ A plate is drawn once for all tests.  That the comparison would notice a mistake
 import json
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from lietool import figure, paths
 from lietool.declaration import Figure
 from lietool.golden import compare, folder, numbers, store
 from lietool.lie import euler, kernels, quaternion, so3
-from lietool.render import draw, style
+from lietool.render import draw, scene, style
 from lietool.verbs import _figures_verify, _picture, _studio
 
 COMMANDS = figure.plates((paths.FIGURES,))
@@ -62,6 +63,16 @@ class TestPlates:
         ]
         assert not overlapping
 
+    def test_labels_are_not_crossed(self, plate_id, plate):
+        built = plate(plate_id)
+        bare = without_labels(built.drawing.picture)
+        light = draw.render(bare).image @ (0.2126, 0.7152, 0.0722)
+        for label in built.labels:
+            x0, y0, x1, y1 = label.box
+            under = light[max(y0 - 3, 0) : y1 + 3, max(x0 - 3, 0) : x1 + 3]
+            # Nothing but a hairline or a corner may run under a text: most of it lies on one even ground.
+            assert (np.abs(under - np.median(under)) > 40.0).mean() < 0.05, label.text
+
     def test_labels_can_be_read_in_grey(self, plate_id, plate):
         built = plate(plate_id)
         for label in built.labels:
@@ -85,6 +96,16 @@ class TestPlates:
         assert plate.equations and all(
             re.fullmatch(r"[1-9A]\.\d+|[KM] \d+", number) for number in plate.equations
         )
+
+
+def without_labels(picture: scene.Picture) -> scene.Picture:
+    return replace(
+        picture,
+        views=tuple(
+            replace(view, records=tuple(r for r in view.records if not isinstance(r, scene.Label)))
+            for view in picture.views
+        ),
+    )
 
 
 def test_goldens_and_labels_belong_to_plates():

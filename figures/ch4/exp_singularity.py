@@ -135,7 +135,7 @@ def _marked(trail: np.ndarray, name: str, offset: tuple[float, float], radius: f
     return [
         *(scene.Tube(piece, style.MARK, radius) for piece in np.split(trail, jumps(trail))),
         scene.Points(trail[-1:], style.MARK, 10.0, rim=style.PAPER),
-        scene.Label(name, trail[-1], style.MARK, style.TEXT, offset),
+        scene.Label(name, trail[-1], style.MARK, style.TEXT, offset, room=70.0),
     ]
 
 

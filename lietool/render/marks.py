@@ -55,7 +55,7 @@ def coordinate_axes(camera: Camera, names: tuple[str, str, str], length: float) 
     records: list[Record] = []
     for axis, name in zip(np.eye(3), names, strict=True):
         records.append(Arrow(np.zeros(3), length * axis, style.INK, 0.010))
-        records.append(beyond(name, length * axis, axis, camera, size=style.SMALL_TEXT, gap=22.0))
+        records.append(beyond(name, length * axis, axis, camera, size=style.SMALL_TEXT, gap=22.0, room=50.0))
     return records
 
 

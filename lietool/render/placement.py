@@ -165,7 +165,7 @@ def _segments(record: Record, view: View, box: Box) -> tuple[np.ndarray, np.ndar
             return None
         case Lines(points=points, width=width, alpha=alpha):
             ends = _pairs(np.asarray(points, float).reshape(-1, 3))
-            half, weight = width / 2.0, alpha * min(max(width / 2.0, 0.3), 1.0)
+            half, weight = width / 2.0, alpha * min(width / 2.0, 1.0) ** 2
         case Tube(points=points, radius=radius):
             ends, half = _pairs(np.asarray(points, float)), radius * world
         case Arrow(start=start, end=end, radius=radius, alpha=alpha):
