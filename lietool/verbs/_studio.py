@@ -33,6 +33,10 @@ class Stop(click.ClickException):
         # Click declares it for the class, and reads it from the instance.
         vars(self)["exit_code"] = code
 
+    def __reduce__(self) -> tuple[type["Stop"], tuple[int, str]]:
+        """Let it travel from one process to another, with its code."""
+        return Stop, (self.exit_code, self.message)
+
 
 @dataclass(frozen=True)
 class Item:
@@ -40,6 +44,10 @@ class Item:
 
     id: str
     command: str
+
+    def __reduce__(self) -> tuple[type["Item"], tuple[str, str]]:
+        """Let it travel to another process, which loads the figure for itself."""
+        return Item, (self.id, self.command)
 
     @cached_property
     def figure(self) -> Figure:

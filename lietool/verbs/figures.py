@@ -19,6 +19,15 @@ _OUT = click.option(
     show_default=True,
     help="Folder for what is made.",
 )
+_JOBS = click.option(
+    "-j",
+    "--jobs",
+    type=click.IntRange(1, 64),
+    metavar="N",
+    default=1,
+    show_default=True,
+    help="How many processes share the work.",
+)
 
 
 @click.group()
@@ -71,9 +80,10 @@ def show(plate: str, as_json: bool) -> None:
 @_OUT
 @click.option("--draft", is_flag=True, help="2x2 samples a pixel instead of 3x3; not compared.")
 @click.option("--size", metavar="WxH", type=_command._Size(), help="Pixels; not compared.")
+@_JOBS
 @_JSON
 def build(
-    ids: tuple[str, ...], folder: Path, draft: bool, size: tuple[int, int] | None, as_json: bool
+    ids: tuple[str, ...], folder: Path, draft: bool, size: tuple[int, int] | None, jobs: int, as_json: bool
 ) -> None:
     """Make the pictures and compare them.
 
@@ -82,15 +92,17 @@ def build(
     """
     from lietool.verbs import _figures_build
 
-    _figures_build.run(_studio.items(ids), _studio.current(), folder, size, draft, as_json)
+    order = _figures_build.Order(folder, size, draft)
+    _figures_build.run(_studio.items(ids), _studio.current(), order, as_json, jobs)
 
 
 @command.command()
 @_IDS
 @_OUT
+@_JOBS
 @_JSON
 @click.pass_context
-def verify(context: click.Context, ids: tuple[str, ...], folder: Path, as_json: bool) -> None:
+def verify(context: click.Context, ids: tuple[str, ...], folder: Path, jobs: int, as_json: bool) -> None:
     """Judge pictures and numbers by their goldens.
 
     A golden is never written by this.
@@ -104,7 +116,9 @@ def verify(context: click.Context, ids: tuple[str, ...], folder: Path, as_json: 
 
     items = _studio.items(ids)
     context.exit(
-        _figures_verify.run(items, _studio.current(), folder / "failed", as_json, everything=not ids)
+        _figures_verify.run(
+            items, _studio.current(), folder / "failed", as_json, everything=not ids, jobs=jobs
+        )
     )
 
 
