@@ -8,6 +8,7 @@ import numpy as np
 from lietool.render import solids, style
 from lietool.render.camera import Box, Camera, Page, project
 from lietool.render.scene import Arrow, Frame, Label, Lines, Points, Record, Surface, Tube
+from lietool.render.theme import BOOK, Theme
 
 # More than any page has pixels; a dash that is finer would only take time.
 _MOST_DASHES = 20000
@@ -38,11 +39,12 @@ class Batch:
 
 @dataclass(frozen=True)
 class Lens:
-    """What a record needs to know to become a batch: camera, box on the page, pixels per page unit."""
+    """What a record needs to know to become a batch: camera, box on the page, pixels per page unit, theme."""
 
     camera: Camera | Page
     box: Box
     unit: float
+    theme: Theme = BOOK
 
     @property
     def world(self) -> float:
@@ -52,14 +54,6 @@ class Lens:
     def depth(self, points: np.ndarray) -> np.ndarray:
         """Return the distance along the axis of view of points (..., 3)."""
         return project(self.camera, self.box, points)[..., 2]
-
-
-def rgba(color: str | np.ndarray, n: int, alpha: float = 1.0) -> np.ndarray:
-    """Return linear RGBA for `n` points; shape (n, 4)."""
-    rows = style.linear(color) if isinstance(color, str) else np.asarray(color, float)
-    rows = np.broadcast_to(rows, (n, 4)).copy()
-    rows[:, 3] *= alpha
-    return rows
 
 
 @singledispatch
@@ -105,7 +99,7 @@ def _(record: Surface, lens: Lens) -> list[Batch]:
         normals = np.repeat((normals / np.where(length > 0, length, 1.0))[:, None], 3, axis=1)
     else:
         normals = np.asarray(record.normals, float)[faces]
-    color = rgba(record.color, len(vertices), record.alpha)[faces]
+    color = lens.theme.rgba(record.color, len(vertices), record.alpha)[faces]
     material = np.full((*faces.shape, 1), MATERIALS[record.material])
     data = np.concatenate([corners, normals, color, material], axis=-1).astype("f4")
     depth = lens.depth(corners.mean(axis=1))
@@ -133,8 +127,8 @@ def _walls(
 @batches.register
 def _(record: Lines, lens: Lens) -> list[Batch]:
     points = np.asarray(record.points, float).reshape(-1, 3)
-    color = rgba(record.color, len(points), record.alpha)
-    half_width = record.width * lens.unit / 2.0
+    color = lens.theme.rgba(record.color, len(points), record.alpha)
+    half_width = lens.theme.widths * record.width * lens.unit / 2.0
     # A hairline thinner than a pixel would vanish between two of them; it is drawn paler instead.
     if half_width < 0.35:
         color[:, 3] *= half_width / 0.35
@@ -154,10 +148,10 @@ def _(record: Lines, lens: Lens) -> list[Batch]:
 def _(record: Points, lens: Lens) -> list[Batch]:
     positions = _finite(record.positions, "Points.positions").reshape(-1, 3)
     n = len(positions)
-    rim = rgba(record.rim, n) if record.rim else np.zeros((n, 4))
+    rim = lens.theme.rgba(record.rim, n) if record.rim else np.zeros((n, 4))
     lift = 1.5 * record.radius * lens.world
     rest = np.tile([record.radius * lens.unit, float(record.shaded), lift], (n, 1))
-    data = np.concatenate([positions, rgba(record.color, n), rim, rest], axis=-1)
+    data = np.concatenate([positions, lens.theme.rgba(record.color, n), rim, rest], axis=-1)
     return [Batch("points", data.astype("f4"), lens.depth(positions) - lift)] if n else []
 
 
@@ -177,7 +171,7 @@ def _(record: Tube, lens: Lens) -> list[Batch]:
     if not isinstance(color, str):
         # Every ring of the tube takes the colour of the nearest point of its axis.
         near = np.argmin(np.linalg.norm(vertices[:, None] - points[None], axis=-1), axis=1)
-        color = np.asarray(color)[near]
+        color = color[near]
     return batches(Surface(vertices, faces, color, normals), lens)
 
 

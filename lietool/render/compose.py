@@ -5,9 +5,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from lietool.render import labels, placement, style
+from lietool.render import labels, placement
 from lietool.render.camera import Box, project
 from lietool.render.scene import Label, Picture
+from lietool.render.theme import Theme
 
 # In pixels, and unequal: symmetry puts anchors half-way between two pixels, where the last bit would decide.
 _SHIFT = np.array([0.1371, 0.1193])
@@ -34,7 +35,12 @@ class PlacedLabel:
 
 
 def compose(
-    image: np.ndarray, picture: Picture, unit: float, corner: tuple[float, float], store: labels.Store
+    image: np.ndarray,
+    picture: Picture,
+    unit: float,
+    corner: tuple[float, float],
+    store: labels.Store,
+    theme: Theme,
 ) -> tuple[PlacedLabel, ...]:
     """Draw every label of a picture into its pixels, each on whole pixels.
 
@@ -49,6 +55,7 @@ def compose(
         Where the page's lower left corner lies, in pixels from the lower left of the image.
     store : Store
         Where the rasterised labels come from.
+    theme : Theme
 
     Returns
     -------
@@ -61,6 +68,19 @@ def compose(
     ValueError
         If a text is not mathtext, or a colour or an anchor is of no known form.
     """
+    placed = []
+    for record, glyphs, point in located(picture, unit, store):
+        x, y = point * unit + corner + _SHIFT
+        left, top = _anchored(record.anchor, x, image.shape[0] - y, glyphs)
+        _lay(image, record, glyphs, (left, top), unit, theme, picture.paper)
+        placed.append(PlacedLabel(record.text, glyphs.key, _ink_box(glyphs, left, top)))
+    return tuple(placed)
+
+
+def located(
+    picture: Picture, unit: float, store: labels.Store
+) -> list[tuple[Label, labels.Glyphs, np.ndarray]]:
+    """Return every label of a picture with its rasterised text and the page point where its anchor goes."""
     page: Box = (0.0, 0.0, float(picture.size[0]), float(picture.size[1]))
     found = [
         (
@@ -75,13 +95,7 @@ def compose(
     moves = placement.places(
         [(r, point, _text_box(r, point, glyphs, unit)) for r, glyphs, point in found], picture
     )
-    placed = []
-    for (record, glyphs, point), move in zip(found, moves, strict=True):
-        x, y = (point + record.offset + move) * unit + corner + _SHIFT
-        left, top = _anchored(record.anchor, x, image.shape[0] - y, glyphs)
-        _lay(image, record, glyphs, (left, top), unit, picture.paper)
-        placed.append(PlacedLabel(record.text, glyphs.key, _ink_box(glyphs, left, top)))
-    return tuple(placed)
+    return [(r, glyphs, point + r.offset + m) for (r, glyphs, point), m in zip(found, moves, strict=True)]
 
 
 def _text_box(record: Label, point: np.ndarray, glyphs: labels.Glyphs, unit: float) -> np.ndarray:
@@ -112,14 +126,20 @@ def _ink_box(glyphs: labels.Glyphs, left: int, top: int) -> tuple[int, int, int,
 
 
 def _lay(
-    image: np.ndarray, record: Label, glyphs: labels.Glyphs, at: tuple[int, int], unit: float, paper: str
+    image: np.ndarray,
+    record: Label,
+    glyphs: labels.Glyphs,
+    at: tuple[int, int],
+    unit: float,
+    theme: Theme,
+    paper: str,
 ) -> None:
     if record.halo:
         reach, fade = max(round(_HALO_REACH * unit), 1), max(round(_HALO_FADE * unit), 1)
         soft = _halo(glyphs.coverage.tobytes(), glyphs.coverage.shape, reach, fade)
         margin = (soft.shape[0] - glyphs.coverage.shape[0]) // 2
-        _blend(image, style.srgb(paper), soft * _HALO_STRENGTH, at[0] - margin, at[1] - margin)
-    _blend(image, style.srgb(record.color), glyphs.coverage / 255.0, *at)
+        _blend(image, theme.srgb(paper), soft * _HALO_STRENGTH, at[0] - margin, at[1] - margin)
+    _blend(image, theme.srgb(record.color), glyphs.coverage / 255.0, *at)
 
 
 def _blend(image: np.ndarray, color: np.ndarray, coverage: np.ndarray, left: int, top: int) -> None:

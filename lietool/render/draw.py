@@ -14,10 +14,11 @@ from itertools import pairwise
 import moderngl
 import numpy as np
 
-from lietool.render import compose, context, labels, style
+from lietool.render import compose, context, labels
 from lietool.render.batches import Batch, Lens, batches, check_measures
 from lietool.render.camera import Box, Page
 from lietool.render.scene import Picture, View
+from lietool.render.theme import BOOK, Theme
 
 SAMPLES, DRAFT_SAMPLES = 3, 2
 # A buffer of this many pixels serves pictures of any size, part by part: fresh memory costs more than passes.
@@ -62,6 +63,7 @@ def render(
     draft: bool = False,
     backend: str | None = None,
     store: labels.Store | None = None,
+    theme: Theme = BOOK,
 ) -> Rendered:
     """Render a picture.
 
@@ -77,6 +79,8 @@ def render(
         Where OpenGL comes from, see `context.get`.
     store : Store, optional
         Where labels come from; the project's own goldens unless given.
+    theme : Theme
+        What the colours of `style` look like; as in the book unless given.
 
     Returns
     -------
@@ -98,18 +102,18 @@ def render(
     unit = min(width / picture.size[0], height / picture.size[1])
     corner = ((width - unit * picture.size[0]) / 2.0, (height - unit * picture.size[1]) / 2.0)
     page: Box = (0.0, 0.0, float(picture.size[0]), float(picture.size[1]))
-    views = [_prepare(view, page, unit) for view in picture.views]
+    views = [_prepare(view, page, unit, theme) for view in picture.views]
     per_side = DRAFT_SAMPLES if draft else SAMPLES
     image = np.empty((height, width, 3), np.uint8)
     for x, y, w, h in _tiles(width, height):
         target = _target(w, h, per_side)
         target.samples.use()
-        target.samples.clear(*style.linear(picture.paper))
+        target.samples.clear(*theme.linear(picture.paper))
         for view in views:
             to_tile = _page_to_tile(unit, (corner[0] - x, corner[1] - y), (w, h))
-            _draw_view(gl, target.samples, view, to_tile, (w, h), per_side)
+            _draw_view(gl, target.samples, view, to_tile, (w, h), per_side, theme)
         image[height - y - h : height - y, x : x + w] = _resolve(gl, target, per_side)
-    placed = compose.compose(image, picture, unit, corner, store or labels.Store())
+    placed = compose.compose(image, picture, unit, corner, store or labels.Store(), theme)
     return Rendered(image, placed)
 
 
@@ -121,12 +125,12 @@ class _Prepared:
     runs: list[tuple[str, np.ndarray]]
 
 
-def _prepare(view: View, page: Box, unit: float) -> _Prepared:
+def _prepare(view: View, page: Box, unit: float, theme: Theme) -> _Prepared:
     box = view.box or page
     if not (np.isfinite(box).all() and box[2] > 0.0 and box[3] > 0.0):
         raise ValueError(f"draw.render: View.box must be x, y and a width and height above 0; got {box}")
     flat = isinstance(view.camera, Page)
-    lens = Lens(view.camera, box, unit)
+    lens = Lens(view.camera, box, unit, theme)
     for record in view.records:
         check_measures(record)
     found = [batch for record in view.records for batch in batches(record, lens)]
@@ -206,6 +210,7 @@ def _draw_view(
     to_tile: np.ndarray,
     tile: tuple[int, int],
     per_side: int,
+    theme: Theme,
 ) -> None:
     camera, box = prepared.view.camera, prepared.box
     viewport = (tile[0] * per_side, tile[1] * per_side)
@@ -220,6 +225,8 @@ def _draw_view(
         "projection": (place @ camera.projection(box)).T.astype("f4").tobytes(),
         "viewport": np.array(viewport, "f4").tobytes(),
         "per_side": np.array(per_side, "f4").tobytes(),
+        "light": np.array([*theme.ambient, theme.key, theme.gloss], "f4").tobytes(),
+        "glass": np.array(theme.glass, "f4").tobytes(),
     }
     if not flat:
         _clear_depth(samples)

@@ -7,19 +7,18 @@ rendered to; widths, radii of points, text sizes and label offsets are in page
 units too.  Positions of records are in the space of the view's camera, which
 for `camera.Page` is the page itself.
 
-Colours are hex strings of `style` or, where a record says so, an array of
-linear RGBA with one row for each point.
+Colours are those of `style`, which a theme may change, or hex strings, which it leaves alone; where a
+record says so, also a `Mix` or an array of linear RGBA with one row for each point.
 """
 
 from dataclasses import dataclass, field
 from typing import Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
+from lietool.render import style
 from lietool.render.camera import Camera, Page
-
-Color = str | np.ndarray
+from lietool.render.theme import Color
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +29,8 @@ class Surface:
     ----------
     vertices : array_like, shape (n, 3)
     faces : array_like of int, shape (m, 3)
-    color : str or ndarray, shape (n, 4)
-        One colour, or linear RGBA for each vertex.
+    color : str, Mix or ndarray, shape (n, 4)
+        One colour, or one for each vertex.
     normals : array_like, shape (n, 3), optional
         Unit normals; without them every face is flat.
     material : {"matte", "flat", "glass"}
@@ -54,7 +53,7 @@ class Lines:
     Parameters
     ----------
     points : array_like, shape (n, 3)
-    color : str or ndarray, shape (n, 4)
+    color : str, Mix or ndarray, shape (n, 4)
     width : float
         In page units.
     alpha : float
@@ -80,7 +79,7 @@ class Points:
     Parameters
     ----------
     positions : array_like, shape (n, 3)
-    color : str or ndarray, shape (n, 4)
+    color : str, Mix or ndarray, shape (n, 4)
     radius : float
         In page units.
     rim : str, optional
@@ -115,7 +114,7 @@ class Tube:
     Parameters
     ----------
     points : array_like, shape (n, 3)
-    color : str or ndarray, shape (n, 4)
+    color : str, Mix or ndarray, shape (n, 4)
     radius : float
     closed : bool
     """
@@ -192,4 +191,4 @@ class Picture:
 
     views: tuple[View, ...]
     size: tuple[int, int] = (1200, 900)
-    paper: str = "#ffffff"
+    paper: str = style.PAPER

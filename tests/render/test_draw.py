@@ -25,6 +25,7 @@ from lietool.render.scene import (
     Tube,
     View,
 )
+from lietool.render.theme import BOOK
 
 CAMERA = Camera((1.0, 0.0, 0.0), height=2.0)
 SQUARE = np.array([[0, 1, 2], [0, 2, 3]])
@@ -77,12 +78,12 @@ class TestColours:
     def test_half_transparent_is_half_the_light(self):
         # Black at one half over white is linear 0.5: 1.055 * 0.5^(1 / 2.4) - 0.055 = 0.73536 = 187.5 / 255.
         assert page(rectangle(0, 0, 64, 48, "#000000", 0.5))[20, 20].tolist() == [188] * 3
-        color, alpha = style.linear("#2b66b1")[:3], 0.3
+        color, alpha = BOOK.linear("#2b66b1")[:3], 0.3
         image = page(rectangle(0, 0, 64, 48, "#2b66b1", alpha))
         assert np.abs(image[20, 20] - srgb(alpha * color + (1 - alpha))).max() <= 1
 
     def test_colours_of_vertices_are_mixed_in_linear_light(self):
-        black, white = style.linear("#000000"), style.linear("#ffffff")
+        black, white = BOOK.linear("#000000"), BOOK.linear("#ffffff")
         ramp = np.array([black, white, white, black])
         image = page(Surface([(0, 0, 0), (64, 0, 0), (64, 48, 0), (0, 48, 0)], SQUARE, ramp, material="flat"))
         assert np.abs(image[24, :, 0] - srgb((np.arange(64) + 0.5) / 64)).max() <= 1
@@ -124,7 +125,7 @@ class TestDepth:
         near, far = across(0.3, 0.5, "#c8372d", 0.5), across(-0.3, 0.8, "#2b66b1", 0.4)
         image = seen(near, far)
         assert np.array_equal(image, seen(far, near))
-        red, blue = style.linear("#c8372d")[:3], style.linear("#2b66b1")[:3]
+        red, blue = BOOK.linear("#c8372d")[:3], BOOK.linear("#2b66b1")[:3]
         wanted = srgb(0.5 * red + 0.5 * (0.4 * blue + 0.6))
         assert np.abs(image[30, 30] - wanted).max() <= 1
 
