@@ -33,7 +33,7 @@ def _rule(ours: str = "", others: str = "", lazily: str = "", ours_lazily: str =
 
 
 _BELOW = "paths atomic cache"
-_ALL = "bench lie mesh interp deform render golden figure verbs lietool " + _BELOW
+_ALL = "bench gallery lie mesh interp deform render golden figure verbs lietool " + _BELOW
 RULES = {
     "lietool": _rule(),
     "paths": _rule(),
@@ -52,6 +52,7 @@ RULES = {
     "bench": _rule("bench lie", "numpy mpmath", "scipy pytransform3d"),
     "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib imageio"),
     "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest"),
+    "gallery": _rule("gallery " + _BELOW, "jinja2 markupsafe", "matplotlib"),
     "verbs": _rule(_ALL, "click", "numpy PIL rich moderngl"),
     # Imported by a verb when it is called, so what it needs may stand at its top.
     "a part of a verb": _rule(_ALL, "click numpy", "PIL rich moderngl"),

@@ -177,13 +177,16 @@ class Studio:
         drawing = item.figure.draw(**item.parameters)
         return Painted(np.zeros((1, 1, 3), np.uint8), drawing.numbers)
 
-    def paint(self, item: Item, *, size: tuple[int, int] | None = None, draft: bool = False) -> Painted:
+    def paint(
+        self, item: Item, *, size: tuple[int, int] | None = None, draft: bool = False, theme: str = "book"
+    ) -> Painted:
         """Draw and render a plate, with labels from its golden folder alone where that has them."""
         from lietool.render import draw, labels
+        from lietool.render.theme import THEMES
 
         drawing = item.figure.draw(**item.parameters)
         store = labels.Store((item.place.labels,))
-        rendered = draw.render(drawing.picture, size=size, draft=draft, store=store)
+        rendered = draw.render(drawing.picture, size=size, draft=draft, store=store, theme=THEMES[theme])
         fresh = store.fresh
         return Painted(
             rendered.image,

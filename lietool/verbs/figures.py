@@ -142,6 +142,38 @@ def accept(ids: tuple[str, ...], reason: str | None, everything: bool) -> None:
     _figures_accept.run(_studio.items(ids), _studio.current(), " ".join(reason.split()))
 
 
+@command.command()
+@_IDS
+@click.option(
+    "-o",
+    "--output",
+    "folder",
+    type=click.Path(path_type=Path),
+    default=Path("out/gallery"),
+    show_default=True,
+    help="Folder for the page.",
+)
+@click.option("--golden", is_flag=True, help="Take the accepted pictures and draw nothing.")
+@click.option("--readme", is_flag=True, help="Renew the README.md beside the goldens instead.")
+@_JOBS
+def gallery(ids: tuple[str, ...], folder: Path, golden: bool, readme: bool, jobs: int) -> None:
+    """Make a page of the plates, to open in a browser.
+
+    With pictures drawn now, light and dark, captions, equations, commands,
+    parameters and numbers; it needs no network.  A folder that holds an older
+    page is renewed, one that holds anything else is refused.
+    """
+    from lietool.verbs import _figures_gallery
+
+    if not readme:
+        _figures_gallery.run(_studio.items(ids), _studio.current(), folder, golden=golden, jobs=jobs)
+        return
+    if ids or golden:
+        raise click.UsageError("--readme is for all plates. Leave out the others and --golden")
+    changed = _figures_gallery.write_readme(_studio.items())
+    click.echo("\n".join(map(str, changed)) or "nothing has changed")
+
+
 def _state(item: _studio.Item) -> str:
     from lietool.golden import store
 
