@@ -1,7 +1,7 @@
 """Figure 2.8 of the book."""
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,9 +12,14 @@ from lietool.render import scene, style
 from lietool.render.camera import Camera
 from lietool.render.globe import globe, joined
 
+from . import _slerp_compare, _slerp_ways
+from ._slerp_ways import Ways
+
 Quaternion = tuple[float, float, float, float]
 # Nearer than this to another, in radians of arc, a point goes without a name of its own.
 _CLOSE = 0.2
+# From a spoke to the middle of the name beside it, in radians.
+_ASIDE = 0.36
 
 
 @figure(
@@ -28,14 +33,35 @@ _CLOSE = 0.2
                 "wound onto a wheel (dashed): equal steps on the line become equal arcs, which is slerp. "
                 "The sphere is a slice of S^3."
             ),
-        )
+        ),
+        "B2.8b": Plate(
+            title="Slerp, normalised lerp and lerp of Euler angles",
+            equations=("2.21", "2.31", "2.32", "2.34"),
+            caption=(
+                "Three ways between the same two rotations, at equal steps of t; below each row, the angle "
+                "turned from one solid to the next, and on the left the whole angle. Slerp turns about one "
+                "axis u at constant speed. Normalised lerp (nlerp) takes the same way, fast in the middle. "
+                "Angles R_z R_y R_x that change evenly go another, longer way: lower right, the path of the "
+                "tip of one axis of the solid."
+            ),
+            params={
+                "view": "compare",
+                "q0": (5.0, 1.0, -2.0, 0.0),
+                "q1": (2.0, 0.0, 4.0, -2.0),
+                "steps": 5,
+                "t": 0.4,
+            },
+        ),
     },
     time=Time("t", 0.0, 1.0),
 )
 def slerp(
+    view: Annotated[Literal["sphere", "compare"], Param("one arc, or three ways to interpolate")] = "sphere",
     q0: Annotated[Quaternion, Param("start (w, x, y, z), brought to length 1")] = (1.0, 0.0, 0.0, 0.0),
     q1: Annotated[Quaternion, Param("end (w, x, y, z), brought to length 1")] = (-0.26, 0.35, 0.46, 0.77),
-    steps: Annotated[int, Param("equal steps from start to end", low=1, high=60)] = 6,
+    steps: Annotated[
+        int, Param("equal steps from start to end; compare shows at most 8", low=1, high=60)
+    ] = 6,
     t: Annotated[float, Param("the moment that is marked", low=0.0, high=1.0)] = 0.6,
 ) -> Drawing:
     """Slerp as the exponential map: equal steps on a tangent line become equal arcs on the sphere.
@@ -47,20 +73,42 @@ def slerp(
     carried to q0 by multiplication from the right (2.33).
     """
     start, end = _unit("q0", q0), _unit("q1", q1)
-    line = quaternion.log(quaternion.multiply(end, quaternion.conjugate(start)))
-    theta = float(np.linalg.norm(line))
+    ways = _slerp_ways.between(start, end)
+    return _sphere(ways, steps, t) if view == "sphere" else _compare(ways, steps, t)
+
+
+def _compare(ways: Ways, steps: int, t: float) -> Drawing:
+    shown = _slerp_compare.compared(ways, steps, t)
+    numbers = {
+        "theta": ways.theta,
+        "line": ways.line,
+        "euler_start": ways.angles,
+        "euler_turns": ways.turns,
+        "times": shown.times,
+        "rotations": shown.rotations,
+        "turned": shown.turned,
+        "marked": shown.now,
+        "from_slerp": shown.aside,
+        "instants": shown.instants,
+        "speeds": shown.speeds,
+        "axis_paths": shown.paths[..., shown.axis],
+    }
+    return Drawing(_slerp_compare.picture(shown), numbers)
+
+
+def _sphere(ways: Ways, steps: int, t: float) -> Drawing:
+    start, line, theta = ways.start, ways.line, ways.theta
     u = line / theta if theta > 1e-12 else np.array([1.0, 0.0, 0.0])
     times = np.linspace(0.0, 1.0, steps + 1)
     # The balls come from the exponential map (2.31), the curve under them from (2.32).
     arc = quaternion.multiply(quaternion.exp(times[:, None] * line), start)
-    curve = quaternion.slerp(start, end, np.linspace(0.0, 1.0, 161))
-    marked = quaternion.slerp(start, end, t)
+    marked = ways.arc(np.array([t]))[0]
     numbers = {
         "theta": theta,
         "axis": u,
         "tangent_points": times[:, None] * line,
         "arc_points": arc,
-        "slerp": quaternion.slerp(start, end, times),
+        "slerp": ways.arc(times),
         "marked": marked,
     }
     piece = _Slice(start, u)
@@ -71,8 +119,9 @@ def slerp(
         arc=piece.of(arc),
         marked_line=_on_line(theta * t),
         marked=piece.of(marked),
-        curve=piece.of(curve),
+        curve=piece.of(ways.arc(np.linspace(0.0, 1.0, 161))),
         at_one=bool(np.allclose(start, (1.0, 0.0, 0.0, 0.0))),
+        opposite=ways.opposite,
     )
     return Drawing(_picture(shown), numbers)
 
@@ -103,7 +152,7 @@ class _Slice:
 
 @dataclass(frozen=True, eq=False)
 class _Shown:
-    """Points in the slice: on the tangent line, on the arc; and whether the slice is the one through 1."""
+    """Points in the slice: on the tangent line, on the arc; whether q0 = 1, and whether q1 = -q0."""
 
     theta: float
     t: float
@@ -113,6 +162,7 @@ class _Shown:
     marked: np.ndarray
     curve: np.ndarray
     at_one: bool
+    opposite: bool
 
 
 def _picture(s: _Shown) -> scene.Picture:
@@ -121,15 +171,17 @@ def _picture(s: _Shown) -> scene.Picture:
     height = max(2.7, (reach - left) * 0.86)
     camera = Camera((0.30, -1.0, 0.42), ((reach + left) / 2.0, 0.0, 0.12), height)
     records = [*_plane(reach), *globe(camera), *_sector(s), *_curves(s), *_names(s)]
-    return scene.Picture((scene.View(tuple(records), camera), scene.View(tuple(_equations(s.at_one)))))
+    return scene.Picture((scene.View(tuple(records), camera), scene.View(tuple(_equations(s)))))
 
 
-def _equations(at_one: bool) -> list[scene.Record]:
-    moved = "" if at_one else r"\,q_0"
+def _equations(s: _Shown) -> list[scene.Record]:
+    moved = "" if s.at_one else r"\,q_0"
     lines = [
         r"$\exp(\theta u) = \cos\theta + \sin\theta\,u$",
         rf"$\mathrm{{slerp}}(q_0, q_1; t) = \exp(t\theta u){moved}$",
     ]
+    if s.opposite:
+        lines[1] = "$q_1 = -q_0$: any $u$ serves, here $i$"
     return [
         scene.Label(text, (1150.0, 130.0 - 58.0 * i, 0.0), style.INK, style.SMALL_TEXT, anchor="rn")
         for i, text in enumerate(lines)
@@ -162,10 +214,10 @@ def _sector(s: _Shown) -> list[scene.Record]:
     spokes = joined(np.stack([np.zeros(3), end]) for end in (s.curve[0], s.curve[-1]))
     part = s.curve[: max(round(s.t * (len(s.curve) - 1)) + 1, 2)]
     records: list[scene.Record] = [
-        scene.Surface(fan, faces, style.ARC, material="flat", alpha=0.10),
-        scene.Lines(spokes, style.ARC, 2.0, dash=(9.0, 7.0)),
-        scene.Lines(np.stack([np.zeros(3), s.marked]), style.ARC_TEXT, 2.2),
-        scene.Lines(0.30 * part, style.ARC_TEXT, 2.2),
+        scene.Surface(fan, faces, style.GROUP, material="flat", alpha=0.10),
+        scene.Lines(spokes, style.GROUP, style.EDGE, dash=(9.0, 7.0)),
+        scene.Lines(np.stack([np.zeros(3), s.marked]), style.GROUP_TEXT, style.EDGE),
+        scene.Lines(0.30 * part, style.GROUP_TEXT, style.EDGE),
         scene.Points([(0.0, 0.0, 0.0)], style.INK, 6.0),
     ]
     return records
@@ -185,15 +237,15 @@ def _curves(s: _Shown) -> list[scene.Record]:
         records += [
             scene.Lines(joined(wraps), style.MUTED, style.THIN, 0.8, dash=(5.0, 6.0)),
             scene.Tube(s.line, style.ALGEBRA, 0.013),
-            scene.Tube(1.006 * s.curve, style.ARC, 0.015),
+            scene.Tube(1.006 * s.curve, style.GROUP, 0.015),
         ]
     return [
         *records,
         scene.Points(s.line, style.ALGEBRA, 7.5),
-        scene.Points(1.006 * s.arc, style.ARC, 7.5),
+        scene.Points(1.006 * s.arc, style.GROUP, 7.5),
         scene.Lines(_wrap(float(s.marked_line[0])), style.INK, style.EDGE),
         scene.Points([s.marked_line], style.ALGEBRA, 12.5, rim=style.PAPER),
-        scene.Points([1.006 * s.marked], style.ARC, 12.5, rim=style.PAPER),
+        scene.Points([1.006 * s.marked], style.GROUP, 12.5, rim=style.PAPER),
     ]
 
 
@@ -209,30 +261,29 @@ def _names(s: _Shown) -> list[scene.Record]:
     moved = "" if s.at_one else r"\,q_0"
     plane = rf"$\mathrm{{Im}}\,\mathrm{{\mathbb{{H}}}}{moved}$"
     start = r"$1 = q_0$" if s.at_one else r"$q_0$"
-    blue, dark = style.ALGEBRA_TEXT, style.ARC_TEXT
+    blue, dark = style.ALGEBRA_TEXT, style.GROUP_TEXT
     names: list[scene.Record] = [
         scene.Label(plane, (-0.75, 0.62, 1.0), blue, offset=(4.0, 12.0), anchor="lb"),
         scene.Label(start, s.line[0], style.INK, offset=(-14.0, 14.0), anchor="rb"),
     ]
     at, rest = s.t * s.theta, (1.0 - s.t) * s.theta
+    if s.theta > _CLOSE:
+        names.append(scene.Label(r"$q_1$", s.arc[-1], style.INK, offset=(20.0, -8.0), anchor="lt"))
     if rest > _CLOSE:
         names.append(scene.Label(rf"$\theta u{moved}$", s.line[-1], blue, offset=(0.0, 22.0), anchor="cb"))
-        names.append(scene.Label(r"$q_1$", s.arc[-1], style.INK, offset=(20.0, -8.0), anchor="lt"))
     if at > _CLOSE:
         names += [
             scene.Label(rf"$t\theta u{moved}$", s.marked_line, blue, offset=(0.0, 24.0), anchor="cb"),
-            _beside_spoke(rf"$\exp(t\theta u){moved}$", s.marked, at),
-            scene.Label(r"$t\theta$", 0.41 * s.curve[round(s.t * 80)], dark, style.SMALL_TEXT),
+            scene.Label(rf"$\exp(t\theta u){moved}$", _beside_spoke(at), dark),
+            scene.Label(r"$t\theta$", 0.41 * _on_circle(at / 2.0), dark, style.SMALL_TEXT),
         ]
     return names
 
 
-def _beside_spoke(text: str, marked: np.ndarray, angle: float) -> scene.Label:
-    """The name of the marked point, where neither the spoke nor the arc runs through it."""
-    if angle < 0.9:
-        where, offset, anchor = 0.55 * marked, (18.0, 0.0), "lc"
-    elif angle < np.pi / 2:
-        where, offset, anchor = marked, (-46.0, 6.0), "rb"
-    else:
-        where, offset, anchor = marked, (-20.0, -12.0), "rt"
-    return scene.Label(text, where, style.ARC_TEXT, style.TEXT, offset, anchor)
+def _on_circle(angle: float) -> np.ndarray:
+    return np.array([np.sin(angle), 0.0, np.cos(angle)])
+
+
+def _beside_spoke(angle: float) -> np.ndarray:
+    """Where the name of the marked point lies: in the sector, or beyond it as long as that is too narrow."""
+    return 0.74 * _on_circle(angle + (_ASIDE if angle < 0.9 else -_ASIDE))
