@@ -1,15 +1,14 @@
 """Gimbal lock, section 2.6 of the book: equations (2.21) to (2.23)."""
 
+from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
 
 from lietool.figure import Drawing, Param, Plate, Time, figure
 from lietool.lie import euler, so3
-from lietool.mesh import shapes
-from lietool.render import scene, solids, style
+from lietool.render import marks, scene, solids, style
 from lietool.render.camera import Camera, Page
-from lietool.render.marks import beyond
 from lietool.render.plot import Axes, number
 
 _SINGULAR = 1e-9
@@ -40,7 +39,7 @@ NAMES = (r"\theta_1", r"\theta_2", r"\theta_3")
             params={"view": "angles", "theta2": 35.0},
         ),
     },
-    time=Time("theta2", 0.0, -90.0),
+    time=Time("theta2", 60.0, -90.0),
 )
 def gimbal(
     view: Annotated[Literal["rings", "angles"], Param("the rings, or the angles as curves")] = "rings",
@@ -67,16 +66,18 @@ def gimbal(
 
 
 def _rings(angles: np.ndarray) -> Drawing:
-    locked = np.array([angles[0], np.pi / 2 if angles[1] > 0.0 else -np.pi / 2, angles[2]])
+    # Always the same of the two locks, so that in motion nothing jumps as theta_2 passes 0.
+    locked = np.array([angles[0], -np.pi / 2, angles[2]])
     both = np.stack([angles, locked])
     axes = euler.axes(both, "xyz")
     smallest = euler.singular_values(both, "xyz").min(axis=-1)
-    camera = Camera((1.0, 0.62, 0.92), (0.0, 0.0, 0.0), 3.12)
+    # From here the inner axis, on its way to lock, never points at the viewer.
+    camera = Camera((0.8, 0.9, 0.62), height=3.2)
     views = []
     for i in range(2):
         records = [*_gimbal(both[i]), *_axes(axes[i], camera)]
-        views.append(scene.View(tuple(records), camera, (600.0 * i, 122.0, 600.0, 690.0)))
-        views.append(scene.View(tuple(_legend(300.0 + 600.0 * i, both[i], float(smallest[i])))))
+        views.append(scene.View(tuple(records), camera, (600.0 * i, 120.0, 600.0, 690.0)))
+        views.append(scene.View(tuple(_legend(300.0 + 600.0 * i, both[i], axes[i], float(smallest[i])))))
     views.append(scene.View((scene.Lines([(600, 60, 0), (600, 840, 0)], style.RULE, style.HAIR),)))
     numbers = {
         "angles": both,
@@ -87,8 +88,9 @@ def _rings(angles: np.ndarray) -> Drawing:
     return Drawing(scene.Picture(tuple(views)), numbers)
 
 
-def _legend(x: float, angles: np.ndarray, smallest: float) -> list[scene.Record]:
-    title = "at lock" if smallest < _SINGULAR else "three independent axes"
+def _legend(x: float, angles: np.ndarray, axes: np.ndarray, smallest: float) -> list[scene.Record]:
+    title = "near lock" if _nearness(axes) > 0.5 else "three independent axes"
+    title = "at lock" if smallest < _SINGULAR else title
     degrees = [number(a, 1) for a in np.rad2deg(angles)]
     values = r",\;\, ".join(rf"{n} = {d}^{{\circ}}" for n, d in zip(NAMES, degrees, strict=True))
     sigma = rf"$\sigma_{{\min}} = {number(smallest, 3)}$"
@@ -115,12 +117,8 @@ def _gimbal(angles: np.ndarray) -> list[scene.Record]:
         (middle[:, 0], 0.61, 0.68, style.INK),
     ):
         records += [scene.Tube([s * near * axis, s * far * axis], color, 0.035) for s in (-1.0, 1.0)]
-    vertices, faces, side = shapes.letter_solid()
     records.append(scene.Tube([0.31 * inner[:, 2], 0.52 * inner[:, 2]], style.INK, 0.025))
-    scaled = 0.64 * vertices @ inner.T
-    for kind, color in enumerate((style.ARC, style.GREYS[0], style.BONE)):
-        records.append(scene.Surface(scaled, faces[side == kind], color))
-    return records
+    return records + marks.letter(inner, size=0.64)
 
 
 def _ring(R: np.ndarray, radius: float, color: str) -> scene.Surface:
@@ -129,22 +127,30 @@ def _ring(R: np.ndarray, radius: float, color: str) -> scene.Surface:
 
 
 def _axes(axes: np.ndarray, camera: Camera) -> list[scene.Record]:
-    """The three axes of rotation, each with its turn; two that coincide run side by side, with one name."""
-    along = float(axes[0] @ axes[2])
-    locked, near = abs(along) > 1.0 - 1e-12, along > np.cos(np.deg2rad(14.0))
+    """The three axes of rotation, each with its turn and its name; two that coincide run side by side."""
+    near = _nearness(axes)
     # At lock the inner axis is drawn beside the outer one, in the direction that it really has.
-    aside = 0.045 * camera.axes[0] if locked else np.zeros(3)
+    aside, name_aside = near * 0.045 * camera.axes[0], near * 14.0
     records: list[scene.Record] = []
-    for k, reach, shift in ((0, 1.42 if locked else 1.18, -aside), (1, 1.18, 0.0 * aside), (2, 1.42, aside)):
-        axis, color = axes[k], style.AXES[k]
-        line = np.stack([-reach * axis, reach * axis]) + shift
-        records.append(scene.Lines(line, color, style.CURVE if locked and k != 1 else style.EDGE))
-        records.append(scene.Arrow((reach - 0.24) * axis + shift, line[1], color, 0.02))
-        records += _turn((reach - (0.42 if locked and k == 0 else 0.22)) * axis, axis, color, camera)
-        if not (near and k == 0):
-            text = rf"${NAMES[0]},\,{NAMES[2]}$" if near and k == 2 else f"${NAMES[k]}$"
-            records.append(beyond(text, reach * axis, axis, camera))
+    for k, side in enumerate((-1.0, 0.0, 1.0)):
+        axis, color, shift = axes[k], style.AXES[k], side * aside
+        reach = 1.42 if k == 2 else 1.18 + (0.24 * near if k == 0 else 0.0)
+        tail, neck, tip = (length * axis + shift for length in (-reach, reach - 0.24, reach))
+        width = style.EDGE + (style.CURVE - style.EDGE) * near * abs(side)
+        records.append(scene.Lines([tail, neck], color, width))
+        records.append(scene.Arrow(neck, tip, color, 0.02))
+        records += _turn((reach - (0.22 + (0.20 * near if k == 0 else 0.0))) * axis, axis, color, camera)
+        name = marks.beyond(f"${NAMES[k]}$", tip, axis, camera, gap=33.0, room=90.0)
+        offset = name.offset[0] + side * name_aside, name.offset[1]
+        records.append(replace(name, offset=offset))
     return records
+
+
+def _nearness(axes: np.ndarray) -> float:
+    """How near the inner axis is to the line of the outer one: 1 at lock, 0 from 40 degrees on."""
+    angle = np.arctan2(np.linalg.norm(np.cross(axes[0], axes[2])), abs(axes[0] @ axes[2]))
+    rest = max(1.0 - float(angle) / np.deg2rad(40.0), 0.0)
+    return rest * rest * (3.0 - 2.0 * rest)
 
 
 def _turn(center: np.ndarray, axis: np.ndarray, color: str, camera: Camera) -> list[scene.Record]:
@@ -197,7 +203,7 @@ def _jump(
     for k, dash in ((1, None), (0, None), (2, (16.0, 7.0))):
         for half in (slice(0, middle), slice(middle, None)):
             ends = x[half], y[half, k]
-            records.append(axes.curve(*ends, style.AXES[k], style.CURVE + 0.6, dash))
+            records.append(axes.curve(*ends, style.AXES[k], style.CURVE, dash))
     for k, aside in ((0, -7.0), (2, 7.0)):
         start, end = axes.at([0.0, 0.0], y[[middle - 1, middle], k]) + np.array([aside, 0.0, 0.0])
         if abs(end[1] - start[1]) > 1.0:
