@@ -9,7 +9,7 @@ from lietool.render.camera import Camera
 from lietool.render.globe import globe
 from lietool.render.plot import Axes, Ticks, number
 
-from ._slerp_ways import NAMES, Ways
+from . import _slerp_ways
 
 COLORS = (style.GROUP, style.ROUTE_1, style.ROUTE_2)
 TEXTS = (style.GROUP_TEXT, style.ROUTE_1_TEXT, style.ROUTE_2_TEXT)
@@ -33,7 +33,7 @@ class Compared:
     `turned` is the angle from each of `times` to the next, `aside` how far from slerp each way is at `t`.
     """
 
-    ways: Ways
+    ways: _slerp_ways.Ways
     times: np.ndarray
     t: float
     rotations: np.ndarray
@@ -52,7 +52,7 @@ class Compared:
         return int(np.argmin(along.round(9)))
 
 
-def compared(ways: Ways, steps: int, t: float) -> Compared:
+def compared(ways: _slerp_ways.Ways, steps: int, t: float) -> Compared:
     """Compute what is shown for so many equal steps and a moment t."""
     times, instants, here = np.linspace(0.0, 1.0, min(steps, MOST_STEPS) + 1), ways.instants(), np.array([t])
     return Compared(
@@ -110,7 +110,9 @@ def _row_texts(c: Compared) -> list[scene.Record]:
     middles = LEFT + (c.times[1:] + c.times[:-1]) / 2.0 * (RIGHT - LEFT)
     for row, y in enumerate(ROWS):
         records += [
-            scene.Label(NAMES[row], (40.0, y + 22.0, 0.0), TEXTS[row], style.TITLE_TEXT, anchor="ln"),
+            scene.Label(
+                _slerp_ways.NAMES[row], (40.0, y + 22.0, 0.0), TEXTS[row], style.TITLE_TEXT, anchor="ln"
+            ),
             scene.Lines([(40.0, y, 0.0), (118.0, y, 0.0)], COLORS[row], style.CURVE, dash=DASHES[row]),
             scene.Label(
                 _degrees(c.turned[row].sum()), (40.0, y - 42.0, 0.0), style.INK, style.SMALL_TEXT, anchor="ln"
@@ -185,7 +187,7 @@ def _below(x: np.ndarray, y: np.ndarray, top: float) -> tuple[np.ndarray, np.nda
     return np.insert(x, cut + 1, crossing), np.insert(kept, cut + 1, top)
 
 
-def _note(ways: Ways) -> list[scene.Record]:
+def _note(ways: _slerp_ways.Ways) -> list[scene.Record]:
     """What is particular about the two ends, in one line below everything."""
     cosine = float(ways.start @ ways.end)
     value = rf"$q_0 \cdot q_1 = {number(cosine)}$"

@@ -13,7 +13,6 @@ from lietool.render.camera import Camera
 from lietool.render.globe import globe, joined
 
 from . import _slerp_compare, _slerp_ways
-from ._slerp_ways import Ways
 
 Quaternion = tuple[float, float, float, float]
 # Nearer than this to another, in radians of arc, a point goes without a name of its own.
@@ -77,7 +76,7 @@ def slerp(
     return _sphere(ways, steps, t) if view == "sphere" else _compare(ways, steps, t)
 
 
-def _compare(ways: Ways, steps: int, t: float) -> Drawing:
+def _compare(ways: _slerp_ways.Ways, steps: int, t: float) -> Drawing:
     shown = _slerp_compare.compared(ways, steps, t)
     numbers = {
         "theta": ways.theta,
@@ -96,7 +95,7 @@ def _compare(ways: Ways, steps: int, t: float) -> Drawing:
     return Drawing(_slerp_compare.picture(shown), numbers)
 
 
-def _sphere(ways: Ways, steps: int, t: float) -> Drawing:
+def _sphere(ways: _slerp_ways.Ways, steps: int, t: float) -> Drawing:
     start, line, theta = ways.start, ways.line, ways.theta
     u = line / theta if theta > 1e-12 else np.array([1.0, 0.0, 0.0])
     times = np.linspace(0.0, 1.0, steps + 1)
