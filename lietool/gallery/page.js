@@ -108,7 +108,9 @@
   };
   const turn = (step) => {
     const order = shown(), next = order[order.indexOf(current) + step];
-    if (next) location.replace(`#${next.id}`);
+    if (!next) return;
+    history.replaceState(null, "", `#${next.id}`);
+    open(next);
   };
   addEventListener("hashchange", byHash);
   dialog.addEventListener("close", () => {
