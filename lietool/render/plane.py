@@ -108,6 +108,7 @@ class Plane:
         *,
         width: float = style.CURVE,
         head: bool = True,
+        dash: tuple[float, float] | None = None,
     ) -> list[Record]:
         """Return the arc of a turn, with an arrow's head at its end; past a full turn it is a spiral.
 
@@ -122,12 +123,10 @@ class Plane:
         width : float
             In page units.
         head : bool
+        dash : tuple of float, optional
         """
-        count = max(round(abs(angle) / 0.05), 2) + 1
-        along = np.linspace(0.0, angle, count)
-        opening = radius * (1.0 + _OPENING * np.maximum(np.abs(along) - 2.0 * np.pi, 0.0) / (2.0 * np.pi))
-        at = np.asarray(center, float) + opening[:, None] * direction(start + along)
-        return path(self.at(at), color, width, head=head)
+        at = spiral(center, radius, start, angle)
+        return path(self.at(at), color, width, head=head, dash=dash)
 
     def dots(self, points: ArrayLike, color: str, radius: float = 7.0) -> Points:
         """Return discs at points (n, 2)."""
@@ -204,7 +203,22 @@ def arc(center: ArrayLike, radius: float, start: float, stop: float, n: int = 61
     return np.asarray(center, float) + radius * direction(np.linspace(start, stop, n))
 
 
-def path(points: np.ndarray, color: str, width: float, *, head: bool = True) -> list[Record]:
+def spiral(center: ArrayLike, radius: float, start: float, angle: float) -> np.ndarray:
+    """Return points (n, 2) of the arc of a turn, radians; past a full turn it opens to a spiral."""
+    count = max(round(abs(angle) / 0.05), 2) + 1
+    along = np.linspace(0.0, angle, count)
+    opening = radius * (1.0 + _OPENING * np.maximum(np.abs(along) - 2.0 * np.pi, 0.0) / (2.0 * np.pi))
+    return np.asarray(center, float) + opening[:, None] * direction(start + along)
+
+
+def path(
+    points: np.ndarray,
+    color: str,
+    width: float,
+    *,
+    head: bool = True,
+    dash: tuple[float, float] | None = None,
+) -> list[Record]:
     """Return a curve on the page (n, 3) that ends in an arrow's head; too short a one is left out."""
     steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
     left = np.concatenate([np.cumsum(steps[::-1])[::-1], [0.0]])
@@ -212,13 +226,13 @@ def path(points: np.ndarray, color: str, width: float, *, head: bool = True) -> 
     if left[0] < 1e-6:
         return []
     if not head or left[0] < reach:
-        return [Lines(points, color, width)]
+        return [Lines(points, color, width, dash=dash)]
     # The head stands on the last piece of the curve, as long as itself, along its chord.
     cut = int(np.flatnonzero(left >= reach)[-1])
     part = (left[cut] - reach) / steps[cut]
     start = points[cut] + part * (points[cut + 1] - points[cut])
     return [
-        Lines(np.concatenate([points[: cut + 1], start[None]]), color, width),
+        Lines(np.concatenate([points[: cut + 1], start[None]]), color, width, dash=dash),
         *_head(start, points[-1], color, 0.76 * reach),
     ]
 
