@@ -14,7 +14,7 @@ from lietool.render.globe import globe, parallels
 from lietool.render.marks import beyond, coordinate_axes, curved_arrow
 from lietool.render.plot import number
 
-from ._directions import length, unit
+from . import _directions
 
 Vector = tuple[float, float, float]
 _SPACE: Box = (60.0, 116.0, 1080.0, 724.0)
@@ -86,7 +86,7 @@ def axis_angle(
     The circle is a parallel of the sphere of radius |x| whose pole is u. Where
     x lies on the axis the circle is a point.
     """
-    axis, size = unit("u", u), length(x)
+    axis, size = _directions.unit("u", u), _directions.length(x)
     if size > 1e150:
         raise ValueError(f"x must have a length of 0 to 1e150; got {x}. Write for example 1,0,0")
     theta = float(np.deg2rad(angle))
@@ -229,10 +229,10 @@ def _names(s: _Shown, camera: Camera) -> list[scene.Record]:
         beyond(r"$x = Rx$" if same else "$x$", s.x, s.x, camera, gap=34.0, room=90.0),
         beyond(r"$x - (u\cdot x)\,u$", s.center + 0.56 * s.radius * s.v, s.u, camera, color=red, room=75.0),
         beyond(r"$u\times x$", s.center + s.radius * s.w, s.w, camera, color=green, gap=40.0, room=100.0),
-        scene.Label(r"$\theta$", middle, style.ARC_TEXT, style.TEXT, room=130.0),
+        scene.Label(r"$\theta$", middle, style.ARC_TEXT, style.TEXT, room=60.0),
     ]
     if not same:
-        labels.append(beyond(r"$Rx$", s.image, s.image, camera, color=style.ARC_TEXT, gap=34.0, room=90.0))
+        labels.append(beyond(r"$Rx$", s.image, s.image, camera, color=style.ARC_TEXT, gap=34.0, room=60.0))
     if np.linalg.norm(s.center) > _ZERO:
         aside = np.cross(s.u, camera.axes[2])
         labels.append(

@@ -185,17 +185,17 @@ def _marked(sheet: Plane, island: _Island, core: float) -> list[scene.Record]:
     records.append(sheet.dots(first, edge, 8.0))
     records.append(scene.Points(sheet.at(last)[None], style.ROUTE_1, _DOT, rim=style.PAPER, shaded=False))
     name, start = ("A", "I") if island.sign > 0 else ("B", "D")
-    if np.allclose(island.path[0], island.marked):
-        name = f"{start} = {name}"
-    elif np.linalg.norm(first - last) > 0.3:
-        records.append(_name(sheet, start, first, edge))
-    records.append(_name(sheet, name, last, style.ROUTE_1_TEXT))
+    if np.linalg.norm(first - last) > 0.3:
+        records.append(_name(sheet, start, first, edge, core))
+    records.append(_name(sheet, name, last, style.ROUTE_1_TEXT, core))
     return records
 
 
-def _name(sheet: Plane, name: str, at: np.ndarray, color: str) -> scene.Label:
+def _name(sheet: Plane, name: str, at: np.ndarray, color: str, core: float) -> scene.Label:
     inside = _NAME * at / np.linalg.norm(at)
-    return scene.Label(f"${name}$", sheet.at(inside), color, style.TEXT, room=40.0)
+    # In GL(2) there are matrices on both sides of the circle.
+    room = 40.0 if core > 1.0 else 0.0
+    return scene.Label(f"${name}$", sheet.at(inside), color, style.TEXT, room=room)
 
 
 def _heading(island: _Island, group: str, alone: bool) -> list[scene.Record]:

@@ -15,7 +15,7 @@ from lietool.render.globe import globe, joined
 from lietool.render.marks import LETTER, LETTER_BEFORE, beyond, curved_arrow, letter
 from lietool.render.plot import Axes, number
 
-from ._directions import unit
+from . import _directions
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -64,7 +64,7 @@ def double_cover(
     path is exp(theta u / 2) q, followed without a jump; a further pair of turns
     is drawn a little outside of the first.
     """
-    u, start = unit("axis", axis), unit("q", q)
+    u, start = _directions.unit("axis", axis), _directions.unit("q", q)
     theta = float(np.deg2rad(turn))
     stages = np.arange(8) * np.pi / 2.0
     shown = Shown(u, start, theta, stages, lift(u, start, stages), lift(u, start, theta))
@@ -183,7 +183,7 @@ def _sphere(s: Shown, camera: Camera, look: Camera) -> list[scene.Record]:
     # Across the diameter, on the side where the path comes from.
     aside = np.array([-now[2], 0.0, now[0]])
     for text, at in (("$q$", now), ("$-q$", -now)):
-        records.append(beyond(text, 0.86 * at, aside, camera, room=110.0))
+        records.append(beyond(text, 0.86 * at, aside, camera, room=70.0))
     return records + _stages(s, points, camera, look)
 
 
