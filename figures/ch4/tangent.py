@@ -42,7 +42,7 @@ def tangent(
     direction: Annotated[float, Param("where X points in the tangent plane", "deg", -360.0, 360.0)] = -20.0,
     speed: Annotated[float, Param("length of X", low=0.0, high=1.2)] = 1.0,
     bend: Annotated[float, Param("how much the curve bends away from exp(tX)", low=-1.0, high=1.0)] = -0.8,
-    t: Annotated[float, Param("the moment that is marked", low=0.0, high=1.5)] = 1.25,
+    t: Annotated[float, Param("the moment that is marked", low=0.0, high=1.5)] = 1.4,
 ) -> Drawing:
     """A group as a curved surface, its Lie algebra as the plane that touches it at the identity.
 
