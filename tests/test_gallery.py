@@ -115,7 +115,8 @@ class TestProse:
             ("Sym+(2) and GL^+(n)", "Sym<sup>+</sup>(2) and GL<sup>+</sup>(<i>n</i>)"),
             ("an error above 10^-5", "an error above 10<sup>−5</sup>"),
             ("a 3 x 3 or 2x2 matrix", "a 3 × 3 or 2×2 matrix"),
-            ("(u.x)u and u x x", "(<i>u</i> · <i>x</i>)<i>u</i> and <i>u</i> × <i>x</i>"),
+            ("(u.x)u or (u . x) u", "(<i>u</i> · <i>x</i>)<i>u</i> or (<i>u</i> · <i>x</i>) <i>u</i>"),
+            ("u x x or u cross x", "<i>u</i> × <i>x</i> or <i>u</i> × <i>x</i>"),
             ("the square root of A^T A", "the square root of <i>A</i><sup><i>T</i></sup> <i>A</i>"),
             ("phi(psi(A)) against A", "<i>φ</i>(<i>ψ</i>(<i>A</i>)) against <i>A</i>"),
             ("x < 0 & y", "<i>x</i> &lt; 0 &amp; <i>y</i>"),
@@ -138,7 +139,7 @@ class TestProse:
 
     def test_nothing_is_lost_from_our_captions(self):
         """Apart from signs and spaces the letters and digits that were written are those that are read."""
-        greek = {value: key for key, value in prose._GREEK.items()}
+        greek = {value: key for key, value in prose._GREEK.items()} | {"ε": "eps"}
         for item in _studio.items():
             for text in (item.plate.title, item.plate.caption):
                 read = html.unescape(re.sub(r"<[^>]*>", "", prose.to_html(text)))

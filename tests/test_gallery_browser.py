@@ -269,6 +269,7 @@ class TestSearch:
             ("eq. (2.33)", "B2.8", set()),
             ("K 9", "KT2", set()),
             ("K (9)", "KT2", set()),
+            ("q0", "B2.8", None),
             ("gimbal", "GL1", {"GL2"}),
             ("SLERP exponential", "B2.8", None),
             ("four stages", "B4.2", None),

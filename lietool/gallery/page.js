@@ -47,7 +47,8 @@
       if (id === `b${term}`) return 90;
       if (equations.includes(term)) return 80;
       if (id.startsWith(term) || id.startsWith(`b${term}`)) return 60;
-      return equations.some((number) => number.startsWith(term)) ? 30 : 0;
+      if (equations.some((number) => number.startsWith(term))) return 30;
+      if (/^[\d.]+$/.test(term)) return 0;
     }
     if (id.startsWith(term)) return 60;
     if (` ${title}`.includes(` ${term}`)) return 50;
@@ -69,6 +70,7 @@
     found.hidden = !wanted.length || !kept.length;
     none.hidden = !wanted.length || kept.length > 0;
     for (const section of chapters) section.hidden = wanted.length > 0;
+    if (wanted.length) for (const link of all(".chapters a")) link.removeAttribute("aria-current");
     count.textContent = !wanted.length ? "" : kept.length === 1 ? "1 plate" : `${kept.length} plates`;
   };
   query.addEventListener("input", () => { search(); scrollTo({ top: Math.min(scrollY, top_()), behavior: "instant" }); });

@@ -13,7 +13,7 @@ _NAMES = (
     *("pi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega"),
     *("Delta", "Theta", "Phi", "Psi", "Omega"),
 )
-_GREEK: dict[str, str] = {name: html.unescape(f"&{name};") for name in _NAMES}
+_GREEK: dict[str, str] = {name: html.unescape(f"&{name};") for name in _NAMES} | {"eps": "ε"}
 # A letter that is also a word, or the shape that the pictures show, is a symbol only within a formula.
 _ALSO_WORDS = "aAF"
 _SIGNS = {"<=": "≤", ">=": "≥", "!=": "≠", "->": "→"}
@@ -27,7 +27,8 @@ _TOKEN = re.compile(
     (?P<panel>(?<!\S)\([a-z]\)(?=\s))
     | (?P<group>\b[OE](?=\((?:n|\d)\)))
     | (?P<dot>\([a-z]\.[a-z]\))
-    | (?P<times>(?<=\d)[ ]?x[ ]?(?=\d)|(?<=\b[A-Za-z])[ ]x[ ](?=[A-Za-z]\b))
+    | (?P<times>(?<=\d)[ ]?x[ ]?(?=\d)|(?<=\b[A-Za-z])[ ](?:x|cross)[ ](?=[A-Za-z]\b))
+    | (?P<inner>(?<=\b[A-Za-z])[ ]\.[ ](?=[A-Za-z]\b))
     | (?P<digits>\d+e-?\d+)
     | (?P<positive>\b(?:GL|Aff|Sym|Diag)\^?\+(?=\(|\W|$))
     | (?<![A-Za-z'’_.])(?P<base>{_BASE})(?P<digit>\d(?!\w))?(?P<low>{_LOW})?(?P<prime>'(?!\w))?
@@ -73,7 +74,9 @@ def _set(match: re.Match[str], text: str) -> str:
     if match["sign"]:
         return _SIGNS[match["sign"]]
     if match["times"]:
-        return match[0].replace("x", "×")
+        return re.sub("x|cross", "×", match[0])
+    if match["inner"]:
+        return " · "
     if match["minus"]:
         return "−"
     if match["dot"]:

@@ -211,7 +211,7 @@ def _parameters(item: _studio.Item) -> Iterator[entry.Parameter]:
     values = item.parameters
     for parameter in item.declared.parameters:
         value = values[parameter.name]
-        allowed = ", ".join(parameter.param.choices) or parameter.range
+        allowed = ", ".join(parameter.param.choices) or parameter.range.replace("-", "−")
         shown = "none" if value is None else parameter.text(value)
         if parameter.kind == "bool":
             shown = "yes" if value else "no"
