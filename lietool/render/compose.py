@@ -71,7 +71,7 @@ def compose(
     placed = []
     for record, glyphs, point in located(picture, unit, store):
         x, y = point * unit + corner + _SHIFT
-        left, top = _anchored(record.anchor, x, image.shape[0] - y, glyphs)
+        left, top = _rounded(record, glyphs, x, image.shape[0] - y)
         _lay(image, record, glyphs, (left, top), unit, theme, picture.paper)
         placed.append(PlacedLabel(record.text, glyphs.key, _ink_box(glyphs, left, top)))
     return tuple(placed)
@@ -102,11 +102,12 @@ def _text_box(record: Label, point: np.ndarray, glyphs: labels.Glyphs, unit: flo
     """Left, lower, right, upper edge of the ink where a label is liked best, in page units."""
     x, y = point + record.offset
     # In pixels from the anchor, y down.
-    left, top, right, low = _ink_box(glyphs, *_anchored(record.anchor, 0.0, 0.0, glyphs))
+    left, top, right, low = _ink_box(glyphs, *_rounded(record, glyphs, 0.0, 0.0))
     return np.array([x + left / unit, y - low / unit, x + right / unit, y - top / unit])
 
 
-def _anchored(anchor: str, x: float, y: float, glyphs: labels.Glyphs) -> tuple[int, int]:
+def anchored(anchor: str, glyphs: labels.Glyphs) -> tuple[float, float]:
+    """Return where the upper left corner of a text lies, seen from its anchor, in pixels, y down."""
     height, width = glyphs.coverage.shape
     right = {"l": 0.0, "c": width / 2.0, "r": float(width)}
     down = {"t": 0.0, "c": height / 2.0, "b": float(height), "n": float(height - glyphs.baseline)}
@@ -114,7 +115,12 @@ def _anchored(anchor: str, x: float, y: float, glyphs: labels.Glyphs) -> tuple[i
         raise ValueError(
             f"Label.anchor must be one of l c r and one of t c b n, such as 'cb'; got {anchor!r}"
         )
-    return round(x - right[anchor[0]]), round(y - down[anchor[1]])
+    return -right[anchor[0]], -down[anchor[1]]
+
+
+def _rounded(record: Label, glyphs: labels.Glyphs, x: float, y: float) -> tuple[int, int]:
+    left, top = anchored(record.anchor, glyphs)
+    return round(x + left), round(y + top)
 
 
 def _ink_box(glyphs: labels.Glyphs, left: int, top: int) -> tuple[int, int, int, int]:
