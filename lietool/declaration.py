@@ -17,7 +17,7 @@ from lietool import parameter as _parameter
 from lietool.parameter import Parameter, nearest
 
 # The options that every figure command has; no parameter may be called so.
-RESERVED = ("output", "size", "draft", "json", "plate", "backend", "help")
+RESERVED = ("output", "plate", "theme", "size", "dpi", "seconds", "fps", "draft", "json", "backend", "help")
 
 # Of an animation: one that is longer would never end, or has frames longer than a GIF can say.
 _MOST_FRAMES, _LONGEST = 1000, 600.0

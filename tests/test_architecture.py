@@ -15,7 +15,7 @@ _ROOT = paths.PACKAGE.parent
 # What stands below everything, and imports only the standard library.
 _BASE = {"paths", "atomic", "cache", "lietool"}
 # Imported inside functions only, wherever they are allowed: each takes a noticeable part of a second.
-_SLOW = {"matplotlib", "scipy", "skimage", "trimesh", "imageio", "rich", "numba"}
+_SLOW = {"av", "matplotlib", "scipy", "skimage", "trimesh", "imageio", "rich", "numba"}
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ RULES = {
     "interp": _rule("interp lie mesh", "numpy", "scipy skimage"),
     "deform": _rule("deform lie mesh", "numpy", "scipy skimage"),
     "bench": _rule("bench lie", "numpy mpmath", "scipy pytransform3d"),
-    "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib imageio"),
+    "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib av"),
     "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest"),
     "gallery": _rule("gallery " + _BELOW, "jinja2 markupsafe", "matplotlib"),
     "verbs": _rule(_ALL, "click", "numpy PIL rich moderngl"),

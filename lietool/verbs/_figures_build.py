@@ -6,7 +6,6 @@ import shutil
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,25 +13,16 @@ from typing import Any
 import click
 
 from lietool import atomic
-from lietool.verbs import _figures_verify, _jobs, _studio, _table
-
-
-@dataclass(frozen=True)
-class Order:
-    """How the pictures are to be made: where to, of what size (None is the plate's own), draft or not."""
-
-    folder: Path
-    size: tuple[int, int] | None = None
-    draft: bool = False
-
-    @property
-    def comparable(self) -> bool:
-        """Whether such pictures can be like their goldens."""
-        return self.size is None and not self.draft
+from lietool.verbs import _figures_verify, _jobs, _picture, _studio, _table
 
 
 def run(
-    items: Sequence[_studio.Item], studio: _studio.Studio, order: Order, as_json: bool, jobs: int = 1
+    items: Sequence[_studio.Item],
+    studio: _studio.Studio,
+    folder: Path,
+    quality: _picture.Quality,
+    as_json: bool,
+    jobs: int = 1,
 ) -> None:
     """Make pictures and print how they compare with their goldens.
 
@@ -42,7 +32,10 @@ def run(
         The plates.
     studio : Studio
         The renderer of this process.
-    order : Order
+    folder : Path
+        Where the pictures go, each as its plate's id.
+    quality : Quality
+        How to render; any but the usual one is not compared.
     as_json : bool
         Print JSON.
     jobs : int
@@ -55,7 +48,7 @@ def run(
     """
     if jobs < 2:
         studio.require()
-    work = partial(_build, order=order, studio=studio if jobs < 2 else None)
+    work = partial(_build, folder=folder, quality=quality, studio=studio if jobs < 2 else None)
     rows = list(_jobs.each(work, items, jobs, "building"))
     if as_json:
         click.echo(json.dumps(rows, indent=2, ensure_ascii=False))
@@ -66,19 +59,21 @@ def run(
         click.echo(line)
 
 
-def _build(item: _studio.Item, order: Order, studio: _studio.Studio | None) -> dict[str, Any]:
+def _build(
+    item: _studio.Item, folder: Path, quality: _picture.Quality, studio: _studio.Studio | None
+) -> dict[str, Any]:
     from lietool.render import export
 
     studio = studio or _studio.Studio()
     studio.require()
     start = time.perf_counter()
-    painted = studio.paint(item, size=order.size, draft=order.draft)
-    path = order.folder / f"{item.id}.png"
+    painted = studio.paint(item, size=quality.size, draft=quality.draft, theme=quality.theme)
+    path = folder / f"{item.id}.png"
     made = _studio.provenance(item, studio.info)
     with _studio.writing(str(path)):
-        atomic.write_bytes(path, export.png(painted.image, made))
+        atomic.write_bytes(path, export.png(painted.image, made, quality.density))
     seconds = time.perf_counter() - start
-    judged = order.comparable and not studio.trouble
+    judged = quality.comparable and not studio.trouble
     word = _figures_verify.judge(item, painted).word if judged else "not compared"
     return {"plate": item.id, "seconds": round(seconds, 3), "verdict": word, "path": str(path)}
 

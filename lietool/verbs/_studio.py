@@ -18,6 +18,7 @@ import lietool
 from lietool import figure as figure_
 from lietool import paths
 from lietool.figure import Figure, Plate
+from lietool.verbs._size import Size
 
 if TYPE_CHECKING:
     import numpy as np
@@ -178,7 +179,7 @@ class Studio:
         return Painted(np.zeros((1, 1, 3), np.uint8), drawing.numbers)
 
     def paint(
-        self, item: Item, *, size: tuple[int, int] | None = None, draft: bool = False, theme: str = "book"
+        self, item: Item, *, size: Size | None = None, draft: bool = False, theme: str = "book"
     ) -> Painted:
         """Draw and render a plate, with labels from its golden folder alone where that has them."""
         from lietool.render import draw, labels
@@ -186,7 +187,8 @@ class Studio:
 
         drawing = item.figure.draw(**item.parameters)
         store = labels.Store((item.place.labels,))
-        rendered = draw.render(drawing.picture, size=size, draft=draft, store=store, theme=THEMES[theme])
+        pixels = size.pixels(drawing.picture.size) if size else None
+        rendered = draw.render(drawing.picture, size=pixels, draft=draft, store=store, theme=THEMES[theme])
         fresh = store.fresh
         return Painted(
             rendered.image,

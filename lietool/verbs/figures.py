@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from lietool.verbs import _command, _studio, _table
+from lietool.verbs import _command, _picture, _size, _studio, _table
 
 _IDS = click.argument("ids", nargs=-1, metavar="[IDS]...")
 _JSON = click.option("--json", "as_json", is_flag=True, help="Print what a program may read.")
@@ -79,11 +79,20 @@ def show(plate: str, as_json: bool) -> None:
 @_IDS
 @_OUT
 @click.option("--draft", is_flag=True, help="2x2 samples a pixel instead of 3x3; not compared.")
-@click.option("--size", metavar="WxH", type=_command._Size(), help="Pixels; not compared.")
+@click.option("--theme", type=_command.THEME, default="book", help="Any but book is not compared.")
+@click.option("--size", metavar="SIZE", type=_command.SIZE, help="Pixels or a length, 8.5cm; not compared.")
+@click.option("--dpi", metavar="N", type=_command.DPI, help="Dots per inch, where --size is a length.")
 @_JOBS
 @_JSON
 def build(
-    ids: tuple[str, ...], folder: Path, draft: bool, size: tuple[int, int] | None, jobs: int, as_json: bool
+    ids: tuple[str, ...],
+    folder: Path,
+    draft: bool,
+    theme: str,
+    size: _size.Size | None,
+    dpi: float | None,
+    jobs: int,
+    as_json: bool,
 ) -> None:
     """Make the pictures and compare them.
 
@@ -92,8 +101,9 @@ def build(
     """
     from lietool.verbs import _figures_build
 
-    order = _figures_build.Order(folder, size, draft)
-    _figures_build.run(_studio.items(ids), _studio.current(), order, as_json, jobs)
+    quality = _picture.Quality(size, dpi, theme, draft)
+    quality.check(".png")
+    _figures_build.run(_studio.items(ids), _studio.current(), folder, quality, as_json, jobs)
 
 
 @command.command()
