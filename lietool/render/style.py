@@ -51,7 +51,7 @@ AXES_TEXT = (
     Tone("#21508f", "#7fb0f2", "#143a70"),
 )
 GREYS = (
-    Tone("#3a3f47", "#d3d7de", "#1a1a1a"),
+    Tone("#3a3f47", "#d3d7de", "#333333"),
     Tone("#8d939d", "#8d949f", "#808080"),
     Tone("#d9dde3", "#4b515c", "#d0d0d0"),
 )

@@ -124,6 +124,6 @@ class Theme:
 
 
 BOOK = Theme("book")
-DARK = Theme("dark", ambient=(0.36, 0.60), gloss=0.5, glass=(0.06, 0.60, 1.00, 1.05), veil=1.6)
+DARK = Theme("dark", ambient=(0.36, 0.60), gloss=0.35, glass=(0.06, 0.60, 1.00, 1.05), veil=1.6)
 PRINT = Theme("print", widths=1.4, ambient=(0.42, 0.64), key=0.60)
 THEMES = {theme.name: theme for theme in (BOOK, DARK, PRINT)}
