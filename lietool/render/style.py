@@ -52,7 +52,7 @@ AXES_TEXT = (
 )
 GREYS = (
     Tone("#3a3f47", "#d3d7de", "#333333"),
-    Tone("#8d939d", "#8d949f", "#808080"),
+    Tone("#8d939d", "#8d949f", "#5e5e5e"),
     Tone("#d9dde3", "#4b515c", "#d0d0d0"),
 )
 

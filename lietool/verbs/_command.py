@@ -208,7 +208,10 @@ def _common(figure: Figure) -> Iterator[click.Option]:
         "[default: the picture's own; 12 cm wide as .svg or .pdf]",
     )
     yield click.Option(
-        ["--dpi"], type=DPI, metavar="N", help="Dots per inch, where --size is a length. [default 300]"
+        ["--dpi"],
+        type=DPI,
+        metavar="N",
+        help="Dots per inch of a length, and of images in .svg and .pdf. [default 300]",
     )
     if figure.time:
         time = figure.time

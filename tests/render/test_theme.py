@@ -5,7 +5,7 @@ from itertools import combinations, pairwise
 import numpy as np
 import pytest
 
-from lietool.render import draw, scene, style
+from lietool.render import draw, marks, scene, style
 from lietool.render.theme import BOOK, DARK, PRINT, THEMES, Mix, Theme, Tone
 
 # Names and values of all colours of the style, those in tuples with their place: "AXES[0]".
@@ -34,8 +34,8 @@ SIDE_BY_SIDE = {
     "algebra, mark, group": (style.ALGEBRA, style.MARK, style.GROUP),
     "wrong, right": (style.WRONG, style.RIGHT),
     "ramp": style.RAMP,
-    "solid": (style.ARC, style.GREYS[0], style.BONE),
-    "solid before": (style.BEFORE_EDGE, style.BEFORE),
+    "solid": marks.LETTER,
+    "solid before": marks.LETTER_BEFORE[::2],
 }
 
 
