@@ -13,7 +13,7 @@ from lietool.render.theme import BOOK, Theme
 # More than any page has pixels; a dash that is finer would only take time.
 _MOST_DASHES = 20000
 
-MATERIALS = {"flat": 0.0, "matte": 1.0, "glass": 2.0}
+MATERIALS = {"flat": 0.0, "matte": 1.0, "glass": 2.0, "soft": 3.0}
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from lietool.render.globe import joined
 from lietool.render.scene import Arrow, Label, Lines, Record, Surface, Tube
 
 # Front, back and walls of the solid: told apart in grey too.
-LETTER = (style.ARC, style.GREYS[0], style.BONE)
+LETTER = (style.ARC, style.GREYS[1], style.GREYS[2])
 LETTER_BEFORE = (style.BEFORE_EDGE, style.GREYS[1], style.BEFORE)
 
 
@@ -90,8 +90,11 @@ def letter(
     rims = [np.append(np.arange(half), 0), np.append(np.arange(half), 0) + half]
     creases = joined(placed[rim] for rim in (*rims, *np.arange(2 * half).reshape(2, half).T))
     return [
-        *(Surface(placed, faces[side == k], color, alpha=alpha) for k, color in enumerate(colors)),
-        Lines(creases, style.INK, style.HAIR, 0.55 * alpha),
+        *(
+            Surface(placed, faces[side == k], color, material="soft", alpha=alpha)
+            for k, color in enumerate(colors)
+        ),
+        Lines(creases, style.INK, style.HAIR, 0.7 * alpha),
     ]
 
 

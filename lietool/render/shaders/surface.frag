@@ -1,5 +1,5 @@
 #version 330 core
-// 0 flat, 1 matte, 2 glass, as in batches.MATERIALS.
+// 0 flat, 1 matte, 2 glass, 3 soft, as in batches.MATERIALS.
 uniform float side;  // of a shell of glass: -1 the far wall, 1 the near wall
 uniform bool lens;   // false on a page, where every line of sight is along z
 // Of the theme: light from below, from above and from the lamp, highlights; glass straight on and at its rim.
@@ -22,7 +22,9 @@ void main() {
     vec3 eye = lens ? normalize(-v_position) : vec3(0.0, 0.0, 1.0);
     vec3 normal = normalize(v_normal);
     float facing = dot(normal, eye);
-    bool shell = v_material > 1.5;
+    bool shell = v_material > 1.5 && v_material < 2.5;
+    // Soft: hardly darker where it is turned from the lamp, so that a face keeps its tint however it turns.
+    float soft = v_material > 2.5 ? 0.55 : 0.0;
     if (shell && facing * side < 0.0) discard;
     if (facing < 0.0) normal = -normal;
     facing = abs(facing);
@@ -42,6 +44,6 @@ void main() {
     float ambient = mix(light.x, light.y, normal.y * 0.5 + 0.5);
     float key = light.z * max(dot(normal, KEY), 0.0);
     vec3 fill = vec3(0.06, 0.075, 0.10) * max(dot(normal, FILL), 0.0);
-    vec3 lit = v_color.rgb * (ambient + key + fill) + 0.16 * light.w * specular;
+    vec3 lit = v_color.rgb * mix(ambient + key + fill, vec3(0.86), soft) + 0.16 * light.w * specular * (1.0 - soft);
     color = vec4(lit * v_color.a, v_color.a);
 }
