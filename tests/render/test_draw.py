@@ -434,7 +434,7 @@ class TestRefused:
             ({"faces": [(0, 1, 3)]}, "faces must be indices of its 3 vertices, from 0; got 0 to 3"),
             ({"faces": [(0, 1, -1)]}, "faces must be indices of its 3 vertices, from 0; got -1 to 1"),
             ({"faces": [(0, 1, 1.5)]}, r"faces must be whole numbers \(n, 3\); got float64 \(1, 3\)"),
-            ({"material": "wood"}, "material must be one of flat, matte, glass; got 'wood'"),
+            ({"material": "wood"}, "material must be one of flat, matte, glass, soft; got 'wood'"),
         ],
     )
     def test_a_surface_that_is_none(self, changed, message):
