@@ -14,6 +14,8 @@ from lietool.figure import Time
 if TYPE_CHECKING:
     import numpy as np
 
+    from lietool.render.scene import Picture
+
 ENDINGS = (".gif", ".apng", ".mp4")
 FASTEST, LONGEST = 60.0, 600.0
 # So many pictures a second look smooth; a GIF has as many as its figure says, for they make it large.
@@ -90,7 +92,12 @@ def sweep(time: Time) -> list[float]:
 
 
 def encode(
-    time: Time, ending: str, paint: Callable[[float], "np.ndarray"], title: str, said: Mapping[str, str]
+    time: Time,
+    ending: str,
+    draw: Callable[[float], "Picture"],
+    render: Callable[["Picture"], "np.ndarray"],
+    title: str,
+    said: Mapping[str, str],
 ) -> bytes:
     """Draw every frame of a film, each moment once, and return the bytes of its file.
 
@@ -99,8 +106,10 @@ def encode(
     time : Time
         With as many frames as there are to be.
     ending : str
-    paint : callable
+    draw : callable
         From a moment to its picture.
+    render : callable
+        From a picture to its pixels.
     title : str
         Before the progress bar.
     said : mapping of str to str
@@ -109,15 +118,18 @@ def encode(
     from lietool.render import export, video
 
     places = sweep(time)
-    images: dict[float, np.ndarray] = {}
+    drawn = {place: draw(place) for place in dict.fromkeys(places)}
+    shown = [drawn[place] for place in places]
+    distinct = {id(picture): picture for picture in shown}
+    images: dict[int, np.ndarray] = {}
     # Only somebody who watches wants to see progress.
-    bar = click.progressbar(length=len(set(places)), label=title, file=sys.stderr)
+    bar = click.progressbar(length=len(distinct), label=title, file=sys.stderr)
     with bar if sys.stderr.isatty() else nullcontext() as progress:
-        for place in dict.fromkeys(places):
-            images[place] = paint(place)
+        for key, picture in distinct.items():
+            images[key] = render(picture)
             if progress:
                 progress.update(1)
-    frames = [images[place] for place in places]
+    frames = [images[id(picture)] for picture in shown]
     if ending == ".gif":
         return export.gif(frames, time.seconds)
     if ending == ".apng":

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from lietool.render.labels import Store
+    from lietool.render.scene import Picture
     from lietool.render.theme import Theme
 
 VECTORS = (".svg", ".pdf")
@@ -201,7 +202,7 @@ def _still(figure: Figure, values: dict[str, Any], drawing: Drawing, ending: str
     from lietool.render import export
 
     if ending not in VECTORS:
-        image = _render(drawing, quality)
+        image = _render(drawing.picture, quality)
         return export.png(image, provenance(figure, values), quality.density)
     from lietool.render import vector
 
@@ -222,16 +223,18 @@ def _still(figure: Figure, values: dict[str, Any], drawing: Drawing, ending: str
 def _moving(figure: Figure, values: dict[str, Any], time: Time, ending: str, quality: Quality) -> bytes:
     even = ending == ".mp4"
 
-    def paint(place: float) -> "np.ndarray":
-        return _render(figure.draw(**values | {time.param: place}), quality, even)
+    def draw(place: float) -> "Picture":
+        return figure.draw(**values | {time.param: place}).picture
 
-    return _film.encode(time, ending, paint, figure.name, _about(figure, values))
+    def render(picture: "Picture") -> "np.ndarray":
+        return _render(picture, quality, even)
+
+    return _film.encode(time, ending, draw, render, figure.name, _about(figure, values))
 
 
-def _render(drawing: Drawing, quality: Quality, even: bool = False) -> "np.ndarray":
+def _render(picture: "Picture", quality: Quality, even: bool = False) -> "np.ndarray":
     from lietool.render import draw
 
-    picture = drawing.picture
     width, height = quality.size.pixels(picture.size) if quality.size else picture.size
     if even:
         # The page is centred, so that nobody sees a pixel more.
