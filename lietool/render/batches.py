@@ -184,6 +184,15 @@ def _(record: Frame, lens: Lens) -> list[Batch]:
     return found
 
 
+def extent(kind: str, data: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return the points (n, 3) of a batch's rows, and how far beyond them it draws, in pixels."""
+    if kind == "lines":
+        return data[:, 3:9].reshape(-1, 3), float(data[:, 20].max())
+    if kind == "points":
+        return data[:, :3], float(data[:, 11].max())
+    return data[..., :3].reshape(-1, 3), 0.0
+
+
 def check_measures(record: Record) -> None:
     """Refuse an opacity outside of 0 to 1, and a width, radius or type size that is negative or no number."""
     for field, most in (("alpha", 1.0), ("width", np.inf), ("radius", np.inf), ("size", np.inf)):

@@ -14,8 +14,8 @@ import moderngl
 import numpy as np
 
 from lietool.render import compose, context, labels, passes
-from lietool.render.batches import Batch, Lens, batches, check_measures
-from lietool.render.camera import Box, Page
+from lietool.render.batches import Batch, Lens, batches, check_measures, extent
+from lietool.render.camera import Box, Page, project
 from lietool.render.scene import Picture, View
 from lietool.render.theme import BOOK, Theme
 
@@ -85,7 +85,8 @@ def render(
     width, height = size or picture.size
     sheet = _sheet(picture, (width, height), draft, backend, theme)
     image = np.empty((height, width, 3), np.uint8)
-    for rows, columns, samples in _parts(sheet, picture.views, theme.linear(picture.paper)):
+    prepared = [_prepare(view, sheet) for view in picture.views]
+    for rows, columns, samples in _parts(sheet, prepared, theme.linear(picture.paper)):
         image[rows, columns] = _encoding()[samples[..., :3]]
     placed = compose.compose(image, picture, sheet.unit, sheet.corner, store or labels.Store(), theme)
     return Rendered(image, placed)
@@ -121,8 +122,9 @@ def layer(
         As `render`.
     """
     sheet = _sheet(picture, size, draft, backend, theme)
-    image = np.empty((size[1], size[0], 4), np.float16)
-    for rows, columns, samples in _parts(sheet, (view,), np.zeros(4)):
+    prepared = _prepare(view, sheet)
+    image = np.zeros((size[1], size[0], 4), np.float16)
+    for rows, columns, samples in _parts(sheet, [prepared], np.zeros(4), _reach(prepared, sheet)):
         image[rows, columns] = samples.view(np.float16)
     return image
 
@@ -152,17 +154,19 @@ def _sheet(picture: Picture, size: tuple[int, int], draft: bool, backend: str | 
 
 
 def _parts(
-    sheet: _Sheet, views: Sequence[View], ground: np.ndarray
+    sheet: _Sheet,
+    views: Sequence["_Prepared"],
+    ground: np.ndarray,
+    region: tuple[int, int, int, int] | None = None,
 ) -> Iterator[tuple[slice, slice, np.ndarray]]:
-    """Yield rows, columns and half floats (h, w, 4), by their bits, of every part of the sheet."""
-    width, height = sheet.size
-    prepared = [_prepare(view, sheet) for view in views]
-    for x, y, w, h in _tiles(width, height):
+    """Yield rows, columns and half floats (h, w, 4), by their bits, of each part of a sheet or its region."""
+    height = sheet.size[1]
+    for x, y, w, h in _tiles(*(region or (0, 0, *sheet.size))):
         target = passes.target(w, h, sheet.per_side)
         target.samples.use()
         target.samples.clear(*ground)
         to_tile = _page_to_tile(sheet.unit, (sheet.corner[0] - x, sheet.corner[1] - y), (w, h))
-        for view in prepared:
+        for view in views:
             _draw_view(sheet, target.samples, view, to_tile, (w, h))
         yield (
             slice(height - y - h, height - y),
@@ -218,10 +222,24 @@ def _sorted_runs(rest: list[Batch], height: float) -> Iterator[tuple[str, np.nda
         yield name, rows[name][row[first:last]]
 
 
-def _tiles(width: int, height: int) -> Iterator[tuple[int, int, int, int]]:
+def _reach(prepared: _Prepared, sheet: _Sheet) -> tuple[int, int, int, int]:
+    """Left, lower edge, width and height in pixels of the part of the sheet that a view draws on."""
+    low, high = np.array(sheet.size, float), np.zeros(2)
+    for kind, data in [*((batch.kind, batch.data) for batch in prepared.opaque), *prepared.runs]:
+        points, margin = extent(kind, data)
+        seen = project(prepared.view.camera, prepared.box, points)[:, :2] * sheet.unit + sheet.corner
+        # And what antialiasing and the shift of the samples may add.
+        low = np.minimum(low, seen.min(axis=0) - margin - 2.0)
+        high = np.maximum(high, seen.max(axis=0) + margin + 2.0)
+    left, down = np.clip(np.floor(low), 0, sheet.size).astype(int).tolist()
+    right, up = np.clip(np.ceil(high), 0, sheet.size).astype(int).tolist()
+    return left, down, max(right - left, 0), max(up - down, 0)
+
+
+def _tiles(left: int, low: int, width: int, height: int) -> Iterator[tuple[int, int, int, int]]:
     for y in range(0, height, TILE[1]):
         for x in range(0, width, TILE[0]):
-            yield x, y, min(TILE[0], width - x), min(TILE[1], height - y)
+            yield left + x, low + y, min(TILE[0], width - x), min(TILE[1], height - y)
 
 
 def _page_to_tile(unit: float, corner: tuple[float, float], tile: tuple[int, int]) -> np.ndarray:

@@ -535,3 +535,43 @@ def test_memory_does_not_grow():
     before, after = map(int, done.stdout.split())
     # A picture's triangles and buffers are some 5 MB: thirty that stay would be 150.
     assert after - before < 50
+
+
+class TestLayer:
+    """One view alone, on no ground: over the paper it is the picture."""
+
+    @pytest.mark.parametrize(
+        "record",
+        [
+            Lines([(0, -2.0, -0.7), (0, 0.9, 0.5)], "#c8372d", 30.0),
+            Points([(0, 0.2, 0.1), (0, 1.3, 0.0)], "#2b66b1", 25.0),
+            across(0.0, 0.4, "#2b66b1", 0.5),
+            Surface(*solids.sphere(0.5)[:2], style.GLASS, solids.sphere(0.5)[2], "glass"),
+            Label("$x$", (0, 0, 0), "#000000"),
+        ],
+    )
+    def test_over_paper(self, record):
+        # The box is small, and what is drawn leaves it.
+        view = View((record,), CAMERA, (40.0, 30.0, 40.0, 30.0))
+        picture = Picture((view,), (120, 90))
+        samples = draw.layer(picture, view, size=(240, 180)).astype(float)
+        light = samples[..., :3] + (1.0 - samples[..., 3:])
+        shown = 255.0 * np.where(
+            light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 0.0) ** (1 / 2.4) - 0.055
+        )
+        bare = Picture(
+            (View(tuple(r for r in view.records if not isinstance(r, Label)), CAMERA, view.box),), (120, 90)
+        )
+        expected = draw.render(bare, size=(240, 180)).image
+        # A pixel on an edge may be rounded otherwise, and one brighter than paper is cut off earlier.
+        off = np.abs(shown - expected).max(axis=-1)
+        assert np.count_nonzero(off > 2.0) <= 25 and np.count_nonzero(off > 8.0) <= 3
+        assert samples[..., 3].any() == (not isinstance(record, Label))
+
+    def test_nothing_in_the_view(self):
+        view = View((Points([(0, 50.0, 0)], "#000000", 3.0),), CAMERA)
+        assert not draw.layer(Picture((view,), (60, 40)), view, size=(60, 40)).any()
+
+    def test_a_size_that_is_none(self):
+        with pytest.raises(ValueError, match=r"draw\.render: size must be 1 to 20000"):
+            draw.layer(Picture((), (60, 40)), View(()), size=(0, 40))
