@@ -23,7 +23,7 @@ from lietool.render.theme import Color
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Triangles: lit ("matte"), lit so that tints last ("soft"), unlit ("flat"), or a convex shell of "glass".
+    """Triangles: lit ("matte"), lit softly ("soft"), unlit ("flat"), or a convex shell of glass ("glass").
 
     Parameters
     ----------
