@@ -5,7 +5,7 @@ import pytest
 
 from lietool import figure, paths
 from lietool.lie import euler
-from lietool.render import draw
+from lietool.render import draw, scene, style
 
 
 class TestGimbal:
@@ -77,3 +77,59 @@ class TestMotion:
         # There the inner axis points against the outer one, here along it.
         inner, outer = shown["axes"][:, 0], shown["axes"][:, 2]
         assert np.sum(inner * outer, axis=-1) == pytest.approx([-1.0, 1.0])
+
+
+class TestSharedLine:
+    def lines(self, theta2: float) -> dict[str, np.ndarray]:
+        """The strokes of the red and of the blue axis in the left picture, as intervals of height."""
+        picture = figure.load("gimbal", (paths.FIGURES,)).draw(theta2=theta2).picture
+        found: dict[str, list[np.ndarray]] = {style.AXIS_X: [], style.AXIS_Z: []}
+        for record in picture.views[0].records:
+            if isinstance(record, scene.Lines) and record.color in found:
+                points = np.asarray(record.points)[:, 2]
+                parts = np.split(points, np.flatnonzero(np.isnan(points)))
+                found[str(record.color)] += [np.sort(part[np.isfinite(part)]) for part in parts]
+        return {color: np.array(parts) for color, parts in found.items()}
+
+    @pytest.mark.parametrize("theta2", [-90.0, 90.0])
+    def test_two_axes_take_turns_on_one_line(self, theta2):
+        red, blue = self.lines(theta2).values()
+        assert len(red) > 4 and len(blue) > 4
+        for low, high in red:
+            assert (np.minimum(high, blue[:, 1]) - np.maximum(low, blue[:, 0])).max() < 1e-9
+
+    def test_away_from_lock_each_line_is_whole(self):
+        _, blue = self.lines(-20.0).values()
+        gaps = np.sort(blue[:, 0])[1:] - np.sort(blue[:, 1])[:-1]
+        assert sorted(gaps.round(9))[-2] == 0.0 < gaps.max()
+
+    @pytest.mark.parametrize(("theta2", "kept"), [(90.0, "-"), (-90.0, "+")])
+    def test_what_is_said_to_matter_does(self, theta2, kept):
+        gimbal = figure.load("gimbal", (paths.FIGURES,))
+        said = [
+            r.text for r in gimbal.draw(theta2=theta2).picture.views[1].records if isinstance(r, scene.Label)
+        ]
+        assert sum(rf"only $\theta_1 {kept} \theta_3$ matters" in text for text in said) == 1
+        back = 25.0 if kept == "-" else -25.0
+        one = gimbal.draw(theta1=10.0, theta2=theta2, theta3=40.0).numbers["rotation"][0]
+        same = gimbal.draw(theta1=35.0, theta2=theta2, theta3=40.0 + back).numbers["rotation"][0]
+        other = gimbal.draw(theta1=35.0, theta2=theta2, theta3=40.0 - back).numbers["rotation"][0]
+        assert np.abs(one - same).max() < 1e-15 < 0.1 < np.abs(one - other).max()
+
+
+class TestMarked:
+    @pytest.mark.parametrize(
+        ("theta", "said"),
+        [
+            (35.0, r"$\theta_1 = -90^{\circ},\;\, \theta_2 = 35^{\circ},\;\, \theta_3 = 90^{\circ}"),
+            (0.0, r"$\theta_2 = 0^{\circ},\;\, \theta_1 + \theta_3 = 0^{\circ}"),
+            (180.0, r"$\theta_2 = 180^{\circ},\;\, \theta_1 - \theta_3 = 180^{\circ}"),
+        ],
+    )
+    def test_its_values_are_printed(self, theta, said):
+        drawing = figure.load("gimbal", (paths.FIGURES,)).draw(view="angles", theta2=theta)
+        found = [r.text for r in drawing.picture.views[0].records if isinstance(r, scene.Label)]
+        assert sum(said in text for text in found) == 1
+        assert drawing.numbers["marked_singular_value"] == pytest.approx(
+            np.sqrt(2.0) * abs(np.sin(np.deg2rad(min(theta, 180.0 - theta)) / 2.0)), abs=1e-15
+        )
