@@ -81,8 +81,22 @@ def located(
     picture: Picture, unit: float, store: labels.Store
 ) -> list[tuple[Label, labels.Glyphs, np.ndarray]]:
     """Return every label of a picture with its rasterised text and the page point where its anchor goes."""
+    found = _found(picture, unit, store)
+    boxes = [(r, at, _text_box(r, at, glyphs, unit)) for r, glyphs, at in found]
+    moves = placement.places(boxes, picture)
+    return [(r, glyphs, at + r.offset + m) for (r, glyphs, at), m in zip(found, moves, strict=True)]
+
+
+def wanted(picture: Picture, unit: float, store: labels.Store) -> list[tuple[Label, np.ndarray, np.ndarray]]:
+    """Return every label of a picture with its point and the box of its text, in page units."""
+    return [(r, at, _text_box(r, at, glyphs, unit)) for r, glyphs, at in _found(picture, unit, store)]
+
+
+def _found(
+    picture: Picture, unit: float, store: labels.Store
+) -> list[tuple[Label, labels.Glyphs, np.ndarray]]:
     page: Box = (0.0, 0.0, float(picture.size[0]), float(picture.size[1]))
-    found = [
+    return [
         (
             record,
             store.get(record.text, record.size * unit),
@@ -92,10 +106,6 @@ def located(
         for record in view.records
         if isinstance(record, Label)
     ]
-    moves = placement.places(
-        [(r, point, _text_box(r, point, glyphs, unit)) for r, glyphs, point in found], picture
-    )
-    return [(r, glyphs, point + r.offset + m) for (r, glyphs, point), m in zip(found, moves, strict=True)]
 
 
 def _text_box(record: Label, point: np.ndarray, glyphs: labels.Glyphs, unit: float) -> np.ndarray:

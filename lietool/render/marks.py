@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lietool.mesh import shapes
+from lietool.render import letter as letter_
 from lietool.render import style
 from lietool.render.camera import Camera
 from lietool.render.globe import joined
@@ -82,7 +82,7 @@ def letter(
     alpha : float
     """
     A = np.asarray(A, float)
-    vertices, faces, side = shapes.letter_solid()
+    vertices, faces, side = letter_.solid()
     placed = size * vertices @ A.T + np.asarray(origin, float)
     if np.linalg.det(A) < 0.0:
         faces = faces[:, ::-1]

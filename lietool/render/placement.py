@@ -19,6 +19,8 @@ _DIRECTIONS = 16
 _STEP, _NEAR = 9.0, 10.0
 # What is bad about a place, in page units of the way to the liked one that would be gone to avoid it.
 _OUTSIDE, _OVERLAP, _CROSSED = 1e4, 2e3, 6.0
+# In a film, how much worse than the liked place the one of the frame before may be.
+_KEEP = 3.0
 # Costs that differ by less are equal: the earlier place is taken.
 _EQUAL = 1e-3
 
@@ -62,15 +64,16 @@ def obstacles(picture: Picture) -> Obstacles:
     return Obstacles(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
-def places(
-    wanted: Sequence[tuple[Label, np.ndarray, np.ndarray]], picture: Picture
-) -> list[tuple[float, float]]:
+Wanted = Sequence[tuple[Label, np.ndarray, np.ndarray]]
+"""Each label with its point (2,) and the box (left, lower, right, upper) of its text, in page units."""
+
+
+def places(wanted: Wanted, picture: Picture) -> list[tuple[float, float]]:
     """Return by how much each label is moved from where its offset and anchor put it, in page units.
 
     Parameters
     ----------
     wanted : sequence of (Label, ndarray (2,), ndarray (4,))
-        Each label with its point and the box (left, lower, right, upper) of its text, in page units.
     picture : Picture
 
     Returns
@@ -78,23 +81,90 @@ def places(
     list of (float, float)
         (0, 0) for a label without room.
     """
-    moves = [np.zeros(2) for _ in wanted]
     if not any(label.room for label, _, _ in wanted):
         return [(0.0, 0.0) for _ in wanted]
-    around = obstacles(picture)
-    page = np.array([_EDGE, _EDGE, picture.size[0] - _EDGE, picture.size[1] - _EDGE])
-    # The second round sees where the labels after it went in the first.
-    for _ in range(2):
-        for i, (label, point, box) in enumerate(wanted):
-            if not label.room:
-                continue
-            others = [
-                other + np.tile(moves[j], 2)
-                for j, (_, _, other) in enumerate(wanted)
-                if j != i and (other[2:] > other[:2]).all()
-            ]
-            moves[i] = _best(point, box, label.room, around, np.reshape(others, (-1, 4)), page)
-    return [(float(x), float(y)) for x, y in moves]
+    return Plan.of(wanted, picture).places([None] * len(wanted))
+
+
+@dataclass(frozen=True, eq=False)
+class _Spots:
+    """Where one label may go: middles of its box, the liked one first, and how bad each is by itself."""
+
+    half: np.ndarray
+    centers: np.ndarray
+    cost: np.ndarray
+
+    @property
+    def boxes(self) -> np.ndarray:
+        """What is to stay free, left, lower, right, upper; shape (n, 4)."""
+        wide = self.half + _MARGIN
+        return np.concatenate([self.centers - wide, self.centers + wide], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """The labels of a picture with all the places where they may go."""
+
+    wanted: Wanted
+    spots: tuple[_Spots | None, ...]
+
+    @classmethod
+    def of(cls, wanted: Wanted, picture: Picture) -> "Plan":
+        """Return the plan of a picture; a label without room has no spots but its own."""
+        around = obstacles(picture)
+        page = np.array([_EDGE, _EDGE, picture.size[0] - _EDGE, picture.size[1] - _EDGE])
+        return cls(
+            wanted,
+            tuple(
+                _spots(point, box, label.room, around, page) if label.room else None
+                for label, point, box in wanted
+            ),
+        )
+
+    def places(self, before: Sequence[tuple[float, float] | None]) -> list[tuple[float, float]]:
+        """Return the moves of all labels.
+
+        Parameters
+        ----------
+        before : sequence of (float, float) or None
+            In a film, their moves in the frame before, which they keep if they can; None for a new label.
+        """
+        moves = [np.zeros(2) if move is None else np.asarray(move) for move in before]
+        # The second round sees where the labels after it went in the first.
+        for _ in range(2):
+            for i, spots in enumerate(self.spots):
+                if spots is None:
+                    continue
+                others = [
+                    box + np.tile(moves[j], 2)
+                    for j, (_, _, box) in enumerate(self.wanted)
+                    if j != i and (box[2:] > box[:2]).all()
+                ]
+                moves[i] = _best(spots, np.reshape(others, (-1, 4)), before[i])
+        return [(float(x), float(y)) for x, y in moves]
+
+
+def _best(spots: _Spots, others: np.ndarray, kept: tuple[float, float] | None) -> np.ndarray:
+    wide, liked = spots.boxes, spots.centers[0]
+    overlapping = (wide[:, None, :2] < others[None, :, 2:]) & (wide[:, None, 2:] > others[None, :, :2])
+    away = np.linalg.norm(spots.centers - liked, axis=-1)
+    if kept is not None:
+        away = 0.3 * away + _KEEP * np.linalg.norm(spots.centers - liked - kept, axis=-1)
+    cost = spots.cost + _OVERLAP * overlapping.all(axis=-1).sum(axis=1) + away
+    return spots.centers[int(np.argmax(cost <= cost.min() + _EQUAL))] - liked
+
+
+def _spots(point: np.ndarray, box: np.ndarray, room: float, around: Obstacles, page: np.ndarray) -> _Spots:
+    half = (box[2:] - box[:2]) / 2.0
+    liked = (box[2:] + box[:2]) / 2.0
+    spots = _Spots(
+        half, np.concatenate([liked[None], _candidates(point, half, liked - point, room)]), np.zeros(0)
+    )
+    wide = spots.boxes
+    outside = (spots.centers - half < page[:2]) | (spots.centers + half > page[2:])
+    reach = np.concatenate([wide[:, :2].min(axis=0), wide[:, 2:].max(axis=0)])
+    cost = _OUTSIDE * outside.any(axis=1) + _CROSSED * crossed(wide, around.near(reach))
+    return _Spots(half, spots.centers, cost)
 
 
 def crossed(boxes: np.ndarray, around: Obstacles) -> np.ndarray:
@@ -117,28 +187,6 @@ def crossed(boxes: np.ndarray, around: Obstacles) -> np.ndarray:
         last = np.minimum(last, np.where(flat, np.where(inside, 1.0, -1.0), np.maximum(one, two)))
     part = np.maximum(last - first, 0.0) * length + np.where(last >= first, 2.0 * around.half_width, 0.0)
     return (part * around.weight).sum(axis=1)
-
-
-def _best(
-    point: np.ndarray, box: np.ndarray, room: float, around: Obstacles, others: np.ndarray, page: np.ndarray
-) -> np.ndarray:
-    half = (box[2:] - box[:2]) / 2.0
-    liked = (box[2:] + box[:2]) / 2.0
-    centers = np.concatenate([liked[None], _candidates(point, half, liked - point, room)])
-    boxes = np.concatenate([centers - half, centers + half], axis=1)
-    wide = boxes + _MARGIN * np.array([-1.0, -1.0, 1.0, 1.0])
-    outside = ((boxes[:, :2] < page[:2]) | (boxes[:, 2:] > page[2:])).any(axis=1)
-    overlapping = (
-        ((wide[:, None, :2] < others[None, :, 2:]) & (wide[:, None, 2:] > others[None, :, :2]))
-        .all(axis=-1)
-        .sum(axis=1)
-    )
-    reach = np.concatenate([wide[:, :2].min(axis=0), wide[:, 2:].max(axis=0)])
-    lines = crossed(wide, around.near(reach))
-    away = np.linalg.norm(centers - liked, axis=-1)
-    cost = _OUTSIDE * outside + _OVERLAP * overlapping + _CROSSED * lines + away
-    best = int(np.argmax(cost <= cost.min() + _EQUAL))
-    return centers[best] - liked
 
 
 def _candidates(point: np.ndarray, half: np.ndarray, liked: np.ndarray, room: float) -> np.ndarray:

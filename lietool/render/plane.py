@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lietool.mesh import shapes
-from lietool.render import style
+from lietool.render import letter, style
 from lietool.render.camera import Box
 from lietool.render.scene import Arrow, Label, Lines, Points, Record, Surface
 
@@ -65,9 +64,9 @@ class Plane:
         dash : tuple of float, optional
             Of the outline.
         """
-        outline = self.at(moved(A, size * shapes.letter_outline()))
+        outline = self.at(moved(A, size * letter.outline()))
         return [
-            Surface(outline, shapes.letter_triangles(), fill, material="flat", alpha=alpha),
+            Surface(outline, letter.triangles(), fill, material="flat", alpha=alpha),
             Lines(np.concatenate([outline, outline[:1]]), edge, width, dash=dash),
         ]
 

@@ -95,6 +95,7 @@ def encode(
     time: Time,
     ending: str,
     draw: Callable[[float], "Picture"],
+    settle: Callable[[list["Picture"]], list["Picture"]],
     render: Callable[["Picture"], "np.ndarray"],
     title: str,
     said: Mapping[str, str],
@@ -108,6 +109,8 @@ def encode(
     ending : str
     draw : callable
         From a moment to its picture.
+    settle : callable
+        From the pictures of all moments to those with their labels at rest.
     render : callable
         From a picture to its pixels.
     title : str
@@ -118,7 +121,8 @@ def encode(
     from lietool.render import export, video
 
     places = sweep(time)
-    drawn = {place: draw(place) for place in dict.fromkeys(places)}
+    moments = list(dict.fromkeys(places))
+    drawn = dict(zip(moments, settle([draw(place) for place in moments]), strict=True))
     shown = [drawn[place] for place in places]
     distinct = {id(picture): picture for picture in shown}
     images: dict[int, np.ndarray] = {}

@@ -229,7 +229,12 @@ def _moving(figure: Figure, values: dict[str, Any], time: Time, ending: str, qua
     def render(picture: "Picture") -> "np.ndarray":
         return _render(picture, quality, even)
 
-    return _film.encode(time, ending, draw, render, figure.name, _about(figure, values))
+    def settle(pictures: list["Picture"]) -> list["Picture"]:
+        from lietool.render import film
+
+        return film.settled(pictures, _store(), closed=time.closed)
+
+    return _film.encode(time, ending, draw, settle, render, figure.name, _about(figure, values))
 
 
 def _render(picture: "Picture", quality: Quality, even: bool = False) -> "np.ndarray":
