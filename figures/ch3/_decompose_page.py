@@ -9,15 +9,12 @@ from lietool.lie import so2
 from lietool.render import scene, style
 from lietool.render.plane import Plane, arc, moved, path
 
-# Centres of the panels, for three steps and for two; what a panel's disc may take around its centre.
-_SQUARE = ((300.0, 716.0), (900.0, 716.0), (900.0, 352.0), (300.0, 352.0))
+from . import _decompose_layout as layouts
+from ._decompose_numbers import fixed, matrices
+
 _MIDDLE = np.array([600.0, 534.0])
-_TRIANGLE = ((250.0, 690.0), (950.0, 690.0), (600.0, 364.0))
-_ROOM = {4: 146.0, 3: 172.0}
-# How far outside of a disc its rotation is drawn.
-_OUTSIDE = 1.19
-# Of a matrix in numbers: from column to column, from row to row, from its middle to its brackets.
-_COLUMN, _ROW, _BRACKET = 94.0, 40.0, (100.0, 40.0)
+# How far axes go on past what is drawn, and arrows lie beside a radius, in page units.
+_PAST, _BESIDE = 20.0, 17.0
 _FILLS = {
     "first": (style.BEFORE, style.BEFORE_EDGE),
     "middle": (style.BETWEEN, style.BETWEEN_EDGE),
@@ -53,42 +50,75 @@ class Stage:
     done: float = 1.0
 
 
+Stages = tuple[Stage, ...]
+
+
 def picture(
-    A: np.ndarray, steps: tuple[Step, ...], stages: tuple[Stage, ...], d: np.ndarray, same: bool
+    A: np.ndarray,
+    steps: tuple[Step, ...],
+    stages: Stages,
+    film: tuple[Stages, ...],
+    d: np.ndarray,
+    same: bool,
 ) -> scene.Picture:
-    """Return the page; `same` says that the singular values are equal, so that the axes mean nothing."""
-    centers = _SQUARE if len(stages) == 4 else _TRIANGLE
-    room = _ROOM[len(stages)]
-    scale = room / (_OUTSIDE * max(1.0, d[0]))
+    """Return the page.
+
+    `film` are the stages at moments from t = 0 to 1; `same` says that the singular values are equal,
+    so that the axes mean nothing.
+    """
+    panels = tuple(_extent(moments) for moments in zip(*film, strict=True))
+    layout = layouts.square(panels) if len(panels) == 4 else layouts.triangle(panels)
     records: list[scene.Record] = []
-    for k, (stage, center) in enumerate(zip(stages, centers, strict=True)):
-        place = Plane(center, scale)
+    for k, (stage, center) in enumerate(zip(stages, layout.centers, strict=True)):
+        place = Plane((float(center[0]), float(center[1])), layout.scale)
         colors = _FILLS["first" if k == 0 else "last" if k == len(stages) - 1 else "middle"]
-        records += _panel(place, stage, colors, room / scale, same)
+        reach = np.array([panels[k].wide, panels[k].high]) + _PAST / layout.scale
+        before = _before(place, stage, stages[k - 1], same) if k else []
+        records += _panel(place, stage, colors, reach, before, same)
         if k:
-            records += _deed(place, stage, stages[k - 1], room / scale, same)
-            records += _connector(centers[k - 1], center, room, steps[k - 1].name, _said(steps[k - 1], d))
-    records += _stretched(steps, centers, room, same)
-    records += _connector(centers[0], centers[-1], room, "A", (), style.MUTED)
-    records += _remark(steps, d, same, len(stages))
-    records += _matrices([("A", A)] + [(step.name, step.matrix) for step in steps[::-1]])
+            records += _deed(place, stage, stages[k - 1], reach, same)
+            name, said = rf"\mathrm{{{k}\!:}}\ {steps[k - 1].name}", _said(steps[k - 1], d)
+            between = layouts.ends(layout.centers[k - 1], center, layout.scale, (panels[k - 1], panels[k]))
+            records += _connector(between, name, said)
+            if steps[k - 1].kind == "stretch" and not same:
+                others = np.array([layout.centers[k - 1], layout.centers[(k + 1) % len(stages)]])
+                records += _stretched(place, stage, others)
+    at_once = layouts.ends(layout.centers[0], layout.centers[-1], layout.scale, (panels[0], panels[-1]))
+    records += _connector(at_once, "A", (), style.MUTED, (9.0, 6.0))
+    records += _remark(steps, d, same, layout)
+    records += matrices([("A", A)] + [(step.name, step.matrix) for step in steps[::-1]])
     return scene.Picture((scene.View(tuple(records)),))
 
 
+def _extent(moments: Stages) -> layouts.Extent:
+    """What a panel takes while its shape changes from the first of the moments to the last."""
+    shapes = np.array([moment.matrix for moment in moments])
+    step = moments[0].step
+    tips = np.array([moment.axes[:, 0] for moment in moments])
+    kind = "" if step is None else step.kind
+    return layouts.extent(shapes, tips if kind == "turn" else 0.0 * tips[:1], kind == "stretch")
+
+
 def _panel(
-    place: Plane, stage: Stage, colors: tuple[str, str], reach: float, same: bool
+    place: Plane,
+    stage: Stage,
+    colors: tuple[str, str],
+    reach: np.ndarray,
+    before: list[scene.Record],
+    same: bool,
 ) -> list[scene.Record]:
-    """The disc, the glyph and the axes, carried as far as the stage says."""
+    """The disc, the glyph and the axes, carried as far as the stage says; `before` lies under the glyph."""
     fill, edge = colors
-    disc = moved(stage.matrix, arc((0.0, 0.0), 1.0, 0.0, 2.0 * np.pi, 121))
+    disc = moved(stage.matrix, _circle())
     n = np.arange(1, len(disc))
     faces = np.stack([0 * n, n, n + 1], axis=-1)
-    cross = np.array([[-reach, 0.0], [reach, 0.0], [np.nan, np.nan], [0.0, -reach], [0.0, reach]])
+    cross = np.array([[-1.0, 0.0], [1.0, 0.0], [np.nan, np.nan], [0.0, -1.0], [0.0, 1.0]])
     records: list[scene.Record] = [
         scene.Surface(
             place.at(np.concatenate([[[0.0, 0.0]], disc])), faces, fill, material="flat", alpha=0.35
         ),
-        place.line(cross, style.RULE, style.HAIR),
+        place.line(reach * cross, style.RULE, style.HAIR),
+        *before,
         *place.glyph(stage.matrix, fill, edge, size=1.1, width=style.THIN),
         place.line(disc, edge, style.EDGE),
     ]
@@ -99,50 +129,72 @@ def _panel(
     return [*records, place.dots([(0.0, 0.0)], style.INK, 4.5)]
 
 
-def _deed(place: Plane, stage: Stage, before: Stage, reach: float, same: bool) -> list[scene.Record]:
-    """What the step did: the outline before, and a curved arrow, or dotted axes with arrows, or a mirror."""
+def _circle() -> np.ndarray:
+    return arc((0.0, 0.0), 1.0, 0.0, 2.0 * np.pi, 121)
+
+
+def _before(place: Plane, stage: Stage, before: Stage, same: bool) -> list[scene.Record]:
+    """What was there before the step: the outline; the axis that turns; the axes that are stretched."""
     step = stage.step
-    outline = moved(before.matrix, arc((0.0, 0.0), 1.0, 0.0, 2.0 * np.pi, 121))
-    ghost = place.line(outline, style.MUTED, style.THIN, 0.8, dash=(5.0, 6.0))
-    if step is None:
-        return []
-    if step.kind == "turn":
-        x, y = before.axes[:, 0]
-        radius = _OUTSIDE * max(float(np.hypot(x, y)), 0.6)
-        curved = place.turn((0.0, 0.0), radius, float(np.arctan2(y, x)), stage.done * step.angle, style.INK)
-        return [ghost, *curved]
-    if step.kind == "flip":
-        along = reach * step.axes[:, 0]
-        return [ghost, place.line([-along, along], style.MARK, style.EDGE, dash=(16.0, 7.0))]
-    records: list[scene.Record] = [ghost]
-    if same:
+    records: list[scene.Record] = [place.line(moved(before.matrix, _circle()), style.BEFORE_EDGE, style.THIN)]
+    if step is None or (same and step.kind == "stretch"):
         return records
-    for axis, size in zip(step.axes.T, np.linalg.eigvalsh(step.matrix)[::-1], strict=True):
-        records.append(place.line([-reach * axis, reach * axis], style.INK, style.EDGE, dash=(2.0, 6.0)))
-        grown = 1.0 + stage.done * (size - 1.0)
-        records += path(place.at([-axis, -grown * axis]), style.INK, style.EDGE)
+    if step.kind == "turn" and not same:
+        start = before.axes[:, 0]
+        records.append(place.line(np.stack([0.0 * start, start]), style.AXIS_X, style.EDGE, 0.45))
+        records.append(scene.Points([place.at(start)], style.PAPER, 6.5, rim=style.AXIS_X, shaded=False))
+    if step.kind == "stretch":
+        for k, axis in enumerate(step.axes.T):
+            past = _past(place, stage, k) * axis
+            records.append(place.line([-past, past], style.INK, style.EDGE, dash=(2.0, 6.0)))
     return records
 
 
-def _stretched(
-    steps: tuple[Step, ...], centers: tuple[tuple[float, float], ...], room: float, same: bool
-) -> list[scene.Record]:
+def _past(place: Plane, stage: Stage, k: int) -> float:
+    """How far from the centre a dotted axis ends: past the disc and what has become of it."""
+    return max(1.0, float(np.linalg.norm(stage.axes[:, k]))) + _PAST / place.scale
+
+
+def _deed(place: Plane, stage: Stage, before: Stage, reach: np.ndarray, same: bool) -> list[scene.Record]:
+    """What the step did: a curved arrow, or arrows along the axes, or a mirror."""
+    step = stage.step
+    if step is None or (same and step.kind == "stretch"):
+        return []
+    if step.kind == "turn":
+        x, y = before.axes[:, 0]
+        radius = layouts.OUTSIDE * max(float(np.hypot(x, y)), layouts.LEAST)
+        return place.turn((0.0, 0.0), radius, float(np.arctan2(y, x)), stage.done * step.angle, style.INK)
+    if step.kind == "flip":
+        along = float(reach.max()) * step.axes[:, 0]
+        return [place.line(np.array([-along, along]), style.MARK, style.EDGE)]
+    records: list[scene.Record] = []
+    for axis, size in zip(step.axes.T, np.linalg.eigvalsh(step.matrix)[::-1], strict=True):
+        grown = 1.0 + stage.done * (size - 1.0)
+        # The radius lies on the axis at this side: the arrow goes beside it.
+        beside = _BESIDE / place.scale * np.array([-axis[1], axis[0]])
+        records += _grown(place.at([-axis, -grown * axis]))
+        records += _grown(place.at([axis + beside, grown * axis + beside]))
+    return records
+
+
+def _grown(ends: np.ndarray) -> list[scene.Record]:
+    """An arrow from where a point was to where it is; a short one is thin, so that it keeps its head."""
+    length = float(np.linalg.norm(ends[1] - ends[0]))
+    return path(ends, style.INK, min(style.CURVE, length / 6.5)) if length > 3.0 else []
+
+
+def _stretched(place: Plane, stage: Stage, others: np.ndarray) -> list[scene.Record]:
     """The names of the singular values, at those ends of the dotted axes that are away from the arrows."""
     records: list[scene.Record] = []
-    for k, step in enumerate(steps):
-        if step.kind != "stretch" or same:
-            continue
-        here = np.asarray(centers[k + 1])
-        others = np.array([centers[k], centers[(k + 2) % len(centers)]]) - here
-        others /= np.linalg.norm(others, axis=-1, keepdims=True)
-        for i, axis in enumerate(step.axes.T):
-            end = axis if (others @ axis).max() <= (others @ -axis).max() + 1e-9 else -axis
-            at = here + room * end
-            records.append(
-                scene.Label(
-                    rf"$\sigma_{i + 1}$", (*at, 0.0), style.AXES_TEXT[i], style.TEXT, tuple(24.0 * end)
-                )
-            )
+    axes = stage.step.axes if stage.step is not None else np.eye(2)
+    away = others - np.asarray(place.origin)
+    away /= np.linalg.norm(away, axis=-1, keepdims=True)
+    for k, axis in enumerate(axes.T):
+        end = axis if (away @ axis).max() <= (away @ -axis).max() + 1e-9 else -axis
+        at = place.at(_past(place, stage, k) * end)
+        records.append(
+            scene.Label(rf"$\sigma_{k + 1}$", at, style.AXES_TEXT[k], style.TEXT, tuple(22.0 * end))
+        )
     return records
 
 
@@ -156,36 +208,30 @@ def _said(step: Step, d: np.ndarray) -> tuple[str, ...]:
     return (rf"${step.angle_name + ' = ' if step.angle_name else ''}{angle}$",)
 
 
-def fixed(value: float | np.floating | np.ndarray) -> str:
-    """Return a number with two digits after the point, without a minus sign before zero."""
-    return f"{round(float(value), 2) + 0.0:.2f}"
-
-
 def _connector(
-    start: tuple[float, float],
-    end: tuple[float, float],
-    room: float,
+    ends: tuple[np.ndarray, np.ndarray],
     name: str,
     said: tuple[str, ...],
     color: str = style.INK,
+    dash: tuple[float, float] | None = None,
 ) -> list[scene.Record]:
     """The arrow from panel to panel, its name on the outer side, and what it amounts to."""
-    a, b = np.asarray(start), np.asarray(end)
-    along = (b - a) / np.linalg.norm(b - a)
-    tail, tip = a + (room + 16.0) * along, b - (room + 16.0) * along
+    tail, tip = ends
     middle = (tail + tip) / 2.0
+    along = (tip - tail) / np.linalg.norm(tip - tail)
     out = np.array([along[1], -along[0]])
     if out @ (middle - _MIDDLE) < 0.0:
         out = -out
-    records: list[scene.Record] = [scene.Arrow((*tail, 0.0), (*tip, 0.0), color, 2.2, 4.0)]
-    records.append(_beside(f"${name}$", middle, out, 20.0, 0.0, color, style.TITLE_TEXT))
-    slanting = 0.1 < abs(out[0]) < 0.9
+    records = path(np.array([[*tail, 0.0], [*tip, 0.0]]), color, style.CURVE, dash=dash)
+    upright, level = abs(out[0]) > 0.9, abs(out[0]) < 0.1
+    gap = 14.0 if level else 18.0
+    # Beside an upright or a slanting arrow all stands on its outer side; else on both.
+    first = 38.0 * len(said) / 2.0 if upright else 0.0
+    records.append(_beside(f"${name}$", middle, out, gap, -first, color, style.TITLE_TEXT))
     for i, line in enumerate(said):
-        # Beside a slanting arrow the lines go on under the name; else they stand on the other side of it.
-        first = 0.0 if out[1] > 0.9 else len(said) - 1.0 if out[1] < -0.9 else (len(said) - 1.0) / 2.0
-        down = 44.0 + 38.0 * i if slanting else 38.0 * (i - first)
-        toward = out if slanting else -out
-        records.append(_beside(line, middle, toward, 20.0, down, style.MUTED, style.SMALL_TEXT))
+        toward = -out if level else out
+        down = 38.0 * (i if out[1] > 0.0 else i - len(said) + 1) if level else 42.0 + 38.0 * i - first
+        records.append(_beside(line, middle, toward, gap, down, style.MUTED, style.SMALL_TEXT))
     return records
 
 
@@ -199,7 +245,7 @@ def _beside(
     return scene.Label(text, (*at, 0.0), color, size, offset, across + upright)
 
 
-def _remark(steps: tuple[Step, ...], d: np.ndarray, same: bool, count: int) -> list[scene.Record]:
+def _remark(steps: tuple[Step, ...], d: np.ndarray, same: bool, layout: layouts.Layout) -> list[scene.Record]:
     """What is special about the matrix, where the panels leave room."""
     lines = []
     if d[0] == 0.0:
@@ -210,31 +256,10 @@ def _remark(steps: tuple[Step, ...], d: np.ndarray, same: bool, count: int) -> l
         lines += [r"$\det A < 0\mathrm{:}$", r"$Q\ \mathrm{is\ a\ reflection}$"]
     if same and d[0] > 0.0:
         lines += [r"$\sigma_1 = \sigma_2\mathrm{:\ any}$", r"$\mathrm{axes\ will\ do}$"]
-    x, y = (600.0, 534.0) if count == 4 else (215.0, 300.0)
+    four = len(layout.centers) == 4
+    x, y = np.mean(layout.centers, axis=0) if four else (190.0, 240.0)
     top = y + 20.0 * (len(lines) - 1)
     return [
-        scene.Label(line, (x, top - 40.0 * i, 0.0), style.MARK, style.SMALL_TEXT)
+        scene.Label(line, (float(x), top - 40.0 * i, 0.0), style.MARK, style.SMALL_TEXT)
         for i, line in enumerate(lines)
     ]
-
-
-def _matrices(named: list[tuple[str, np.ndarray]]) -> list[scene.Record]:
-    """A line of matrices in numbers, each under its name; after the first an equals sign."""
-    pitch = 2.0 * _BRACKET[0] + 40.0
-    left = 600.0 - pitch * (len(named) - 1) / 2.0
-    records: list[scene.Record] = []
-    for k, (name, matrix) in enumerate(named):
-        # The sign of equality takes a little more than the gap between two factors.
-        x, y = left + pitch * k + (12.0 if k else -12.0), 68.0
-        records.append(scene.Label(f"${name}$", (x, y + 56.0, 0.0), style.INK, style.TEXT, anchor="cn"))
-        for i, j in np.ndindex(2, 2):
-            at = (x + _COLUMN * (j - 0.1), y + _ROW * (0.5 - i), 0.0)
-            text = f"${fixed(matrix[i, j])}$"
-            records.append(scene.Label(text, at, style.INK, style.SMALL_TEXT, (0.0, -10.0), "rn"))
-        for side in (-1.0, 1.0):
-            edge, inner = x + side * _BRACKET[0], x + side * (_BRACKET[0] - 9.0)
-            high, low = y + _BRACKET[1], y - _BRACKET[1]
-            bracket = [(inner, high), (edge, high), (edge, low), (inner, low)]
-            records.append(scene.Lines([(*p, 0.0) for p in bracket], style.INK, style.EDGE))
-    records.append(scene.Label("$=$", (left + pitch / 2.0, 68.0, 0.0), style.INK, style.TEXT))
-    return records

@@ -20,10 +20,10 @@ _EQUAL = 1e-9
             title="The singular value decomposition",
             equations=("3.14",),
             caption=(
-                "The unit disc goes round the square in three steps: R_beta turns the axes of A into "
-                "those of the page, D stretches along them (dotted), R_alpha turns them to where they "
-                "belong. The arrow at the left is A at once. The semi-axes of the ellipse are the "
-                "singular values. Dashed: the outline before each step. Below, the factors in numbers."
+                "Clockwise from the upper left: R_beta turns the right singular directions of A (red and "
+                "green) into the axes of the page, D stretches along them (dotted) by the singular values, "
+                "R_alpha turns them into the left ones. The dashed arrow is A at once. In each step the "
+                "grey outline is the one before it. Below, the factors in numbers."
             ),
         ),
         "B3.3b": Plate(
@@ -31,19 +31,20 @@ _EQUAL = 1e-9
             equations=("3.11", "3.13"),
             caption=(
                 "The same matrix in two steps, the stretch first: S stretches along its own eigenvectors "
-                "(dotted), which are at right angles; then R turns all. The eigenvalues of S are the "
-                "singular values of A. Dashed: the outline before each step. Below, the factors in "
-                "numbers."
+                "(red and green, dotted), which are at right angles; then R turns all. The eigenvalues of S "
+                "are the singular values of A. The dashed arrow is A at once. In each step the grey outline "
+                "is the one before it. Below, the factors in numbers."
             ),
             params={"kind": "polar"},
         ),
         "B3.3c": Plate(
-            title="The polar decomposition in the other order, A = S R",
+            title="The polar decomposition in the other order, A = S' R",
             equations=("3.12", "3.13"),
             caption=(
-                "The same matrix in two steps, the rotation first: R is the same as in A = R S, but S is "
-                "another stretch, by the same factors along eigenvectors that R has turned (dotted). "
-                "Dashed: the outline before each step. Below, the factors in numbers."
+                "The same matrix in two steps, the rotation first: R is the same as in A = R S, but S' is "
+                "another stretch, by the same factors, along the eigenvectors of S turned by R (dotted). "
+                "The dashed arrow is A at once. In each step the grey outline is the one before it. Below, "
+                "the factors in numbers."
             ),
             params={"kind": "polar-left"},
         ),
@@ -52,7 +53,7 @@ _EQUAL = 1e-9
 )
 def decompose(
     kind: Annotated[
-        Literal["svd", "polar", "polar-left"], Param("A = R_alpha D R_beta, A = R S or A = S R")
+        Literal["svd", "polar", "polar-left"], Param("A = R_alpha D R_beta, A = R S or A = S' R")
     ] = "svd",
     matrix: Annotated[Matrix, Param("the matrix A, row by row", low=-10.0, high=10.0)] = (
         0.9,
@@ -75,6 +76,7 @@ def decompose(
     U, d, V = _singular(A)
     steps = _steps(kind, U, d, V)
     stages = _stages(steps, V, t)
+    film = tuple(_stages(steps, V, moment) for moment in np.linspace(0.0, 1.0, 12 * len(steps) + 1))
     numbers = {
         "A": A,
         "singular_values": d,
@@ -85,7 +87,7 @@ def decompose(
         "shown": np.array([stage.matrix for stage in stages]),
     }
     same = bool(d[0] - d[1] <= _EQUAL * d[0])
-    return Drawing(page.picture(A, steps, stages, d, same), numbers)
+    return Drawing(page.picture(A, steps, stages, film, d, same), numbers)
 
 
 def _singular(A: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -110,7 +112,7 @@ def _steps(kind: str, U: np.ndarray, d: np.ndarray, V: np.ndarray) -> tuple[page
     turn = _orthogonal(U @ V.T)
     if kind == "polar":
         return page.Step("S", (V * d) @ V.T, "stretch", V), turn
-    return turn, page.Step("S", (U * d) @ U.T, "stretch", U)
+    return turn, page.Step("S'", (U * d) @ U.T, "stretch", U)
 
 
 def _orthogonal(Q: np.ndarray, angle: str = "") -> page.Step:

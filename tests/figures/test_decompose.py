@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lietool import figure, paths
+from lietool.render import scene
 
 MATRICES = {
     "ordinary": (0.9, -0.3, 1.0, 1.0),
@@ -85,3 +86,29 @@ class TestSteps:
     def test_one_begins_when_the_one_before_has_ended(self):
         first, second, third = np.diff(shown(t=0.5)["shown"], axis=0)
         assert np.abs(first).max() > 0.1 and np.abs(second).max() > 0.1 and np.abs(third).max() == 0.0
+
+
+class TestPage:
+    @pytest.mark.parametrize("kind", ["svd", "polar", "polar-left"])
+    def test_nothing_moves_with_time_but_the_shapes(self, kind, matrix):
+        early, late = (labels(kind=kind, matrix=matrix, t=t) for t in (0.3, 1.0))
+        assert early.keys() == late.keys()
+        # The names of the singular values go with the ends of the axes.
+        names = [name for name in early if not name.startswith(r"$\sigma") or "=" in name]
+        assert "$A$" in names
+        for name in names:
+            assert np.abs(early[name] - late[name]).max() < 1e-9, name
+
+    def test_numbers_are_equal_only_where_they_are_not_rounded(self):
+        assert r"$\approx$" in labels()
+        assert r"$\approx$" not in labels(matrix=(0.0, -2.0, 1.0, 0.0))
+
+
+def labels(**params):
+    picture = figure.load("decompose", (paths.FIGURES,)).draw(**params).picture
+    return {
+        record.text: np.asarray(record.position)
+        for view in picture.views
+        for record in view.records
+        if isinstance(record, scene.Label)
+    }
