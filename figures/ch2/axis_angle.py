@@ -17,18 +17,22 @@ from lietool.render.plot import number
 from . import _directions
 
 Vector = tuple[float, float, float]
-_SPACE: Box = (60.0, 116.0, 1080.0, 724.0)
-_CORNER: Box = (24.0, 24.0, 200.0, 200.0)
+_SPACE: Box = (60.0, 104.0, 1080.0, 716.0)
+_CORNER: Box = (30.0, 92.0, 190.0, 190.0)
+_TITLE, _LEGEND = 846.0, 52.0
 # The plane of the circle is seen best when the line of sight meets it at about this sine.
 _TILT = 0.45
 # A part of x that is shorter than this, as a fraction of x, is not there.
 _ZERO = 1e-9
-_SHAFT, _AXIS, _TURN = 0.017, 1.42, 0.14
+# The last is about the length of the name of a dashed part.
+_SHAFT, _AXIS, _TURN, _SEEN, _LONG = 0.017, 1.16, 0.14, 0.1, 0.45
+_X, _U, _ALONG = r"\mathbf{x}", r"\mathbf{u}", r"(\mathbf{u}\cdot\mathbf{x})\,\mathbf{u}"
+_ACROSS, _CROSS = r"\mathbf{x}_{\!\perp}", r"\mathbf{u}\times\mathbf{x}"
 
 
 @dataclass(frozen=True, eq=False)
 class _Shown:
-    """The vectors of (2.14) in units of |x|, and the unit vectors v, w = u x v in the plane of the circle."""
+    """The vectors of (2.14), and the unit vectors v, w = u x v in the plane of the circle."""
 
     u: np.ndarray
     v: np.ndarray
@@ -64,10 +68,10 @@ class _Shown:
             title="Axis and angle",
             equations=("2.14", "2.15", "2.16", "2.17", "2.18"),
             caption=(
-                "The rotation by theta about the axis u carries x along a circle to Rx. The part (u.x)u of x "
-                "along the axis stays. The part x - (u.x)u across it, and u x x, as long and at right angles "
-                "to both, span the plane of the circle; there Rx is reached by the cosine of theta along the "
-                "one and the sine along the other (dashed)."
+                "The rotation by theta about the unit vector u carries the unit vector x along a circle to "
+                "Rx. Its part (u.x)u along the axis stays. The part across it, x - (u.x)u, and u x x, as "
+                "long and at right angles to both, span the plane of the circle. There the other way to Rx "
+                "(dashed) goes by the cosine of theta along the one and by the sine along the other."
             ),
         )
     },
@@ -75,33 +79,35 @@ class _Shown:
 )
 def axis_angle(
     u: Annotated[Vector, Param("axis (x, y, z), brought to length 1")] = (0.1, 0.35, 0.95),
-    x: Annotated[Vector, Param("the vector that is turned (x, y, z)")] = (0.9, -0.4, 1.0),
-    angle: Annotated[float, Param("angle of the rotation", "deg", -720.0, 720.0)] = 140.0,
+    x: Annotated[Vector, Param("the vector that is turned (x, y, z), brought to length 1 unless 0")] = (
+        0.9,
+        -0.4,
+        0.6,
+    ),
+    angle: Annotated[float, Param("angle of the rotation", "deg", -720.0, 720.0)] = 112.0,
 ) -> Drawing:
     """Axis and angle: the rotation about u carries x along a circle, by Rodrigues' formula.
 
     What to look for: blue is the part of x along the axis, which does not move;
     red is the part across it, and green is u x x, a quarter turn further on.
     The dashed way to Rx is cos(theta) times red, then sin(theta) times green.
-    The circle is a parallel of the sphere of radius |x| whose pole is u. Where
-    x lies on the axis the circle is a point.
+    The circle is a parallel of the unit sphere whose pole is u. Where x lies on
+    the axis the circle is a point.
     """
-    axis, size = _directions.unit("u", u), _directions.length(x)
-    if size > 1e150:
-        raise ValueError(f"x must have a length of 0 to 1e150; got {x}. Write for example 1,0,0")
+    axis = _directions.unit("u", u)
+    turned = _directions.unit("x", x) if any(x) else np.zeros(3)
     theta = float(np.deg2rad(angle))
-    R = so3.from_axis_angle(axis, theta)
-    image = so3.act(R, np.array(x))
-    across = np.array(x) - (axis @ np.array(x)) * axis
-    shown = parts(axis, np.array(x) / (size or 1.0), theta)
+    shown = parts(axis, turned, theta)
+    across = turned - shown.center
     numbers = {
         "axis": axis,
-        "rotation": R,
-        "image": image,
-        "along": (axis @ np.array(x)) * axis,
+        "vector": turned,
+        "rotation": so3.from_axis_angle(axis, theta),
+        "image": shown.image,
+        "along": shown.center,
         "across": across,
-        "cross": np.cross(axis, np.array(x)),
-        "radius": float(np.linalg.norm(across)),
+        "cross": np.cross(axis, turned),
+        "radius": shown.radius,
     }
     return Drawing(_picture(shown), numbers)
 
@@ -115,7 +121,7 @@ def parts(u: np.ndarray, x: np.ndarray, theta: float) -> _Shown:
 
 
 def camera_for(s: _Shown) -> Camera:
-    """From where the circle is an open ellipse, with the part across to the left and a little to the front.
+    """From where the circle is an open ellipse, with the part across to the right and a little to the front.
 
     It depends on u and x alone, so that it rests while the angle changes.
     """
@@ -127,7 +133,7 @@ def camera_for(s: _Shown) -> Camera:
     # An axis that points down is seen from behind.
     side = -1.0 if s.u[2] < -1e-9 else 1.0
     # Off the axes of space, of which one would be seen end on.
-    cost = 8.0 * (side * d @ s.u - _TILT) ** 2 + 2.0 * (d @ s.v - 0.35) ** 2 + right @ s.v
+    cost = 8.0 * (side * d @ s.u - _TILT) ** 2 + 2.0 * (d @ s.v - 0.2) ** 2 - right @ s.v
     cost += 8.0 * np.maximum(np.abs(d).max(axis=-1) - 0.88, 0.0)
     best = d[np.argmin(np.round(cost, 9))]
     ball = np.concatenate(
@@ -139,60 +145,77 @@ def camera_for(s: _Shown) -> Camera:
 
 def _picture(s: _Shown) -> scene.Picture:
     camera = camera_for(s)
-    records = _axis(s, camera)
-    if s.x.any():
-        records += [*globe(camera, alpha=0.6, frame=solids.frame_along(s.u)), *_circle(s)]
-        records += _vectors(s)
-    records += _names(s, camera)
+    glass = [*globe(camera, alpha=0.6, frame=graticule(s, camera)), *_disc(s)] if s.x.any() else []
     small = Camera(camera.direction, (0.0, 0.0, 0.0), 2.9)
     views = (
-        scene.View(tuple(records), camera, _SPACE),
+        scene.View(tuple(glass), camera, _SPACE),
+        # Over the glass, so that it does not tint them.
+        scene.View((*_axis(s), *_circle(s, camera), *_vectors(s), *_names(s, camera)), camera, _SPACE),
         scene.View(tuple(coordinate_axes(small, ("$x$", "$y$", "$z$"), 0.9)), small, _CORNER),
-        scene.View(tuple(_equation(s.theta))),
+        scene.View(tuple(_texts(s.theta))),
     )
     return scene.Picture(views)
 
 
-def _equation(theta: float) -> list[scene.Record]:
+def graticule(s: _Shown, camera: Camera) -> np.ndarray:
+    """Return a frame with the pole u; two meridians run behind the axis, so that none runs beside it."""
+    back = np.cross(camera.eye, s.u)
+    side = back / np.linalg.norm(back)
+    return np.stack([np.cross(side, s.u), side, s.u], axis=-1)
+
+
+def _texts(theta: float) -> list[scene.Record]:
     degrees = number(np.rad2deg(theta), 1)
-    texts = [
-        r"$Rx = (u\cdot x)\,u + \cos\theta\;(x - (u\cdot x)\,u) + \sin\theta\;(u\times x)$",
-        rf"$\theta = {degrees}^{{\circ}}$",
-    ]
+    title = rf"rotation about ${_U}$ by $\theta = {degrees}^{{\circ}}$"
+    sides = rf"R{_X} = {_ALONG} + \cos\theta\;{_ACROSS} + \sin\theta\;({_CROSS})"
+    where = rf"{_ACROSS} = {_X} - {_ALONG}"
+    legend = rf"${sides}$,   ${where}$"
     return [
-        scene.Label(text, (1160.0, 54.0 + 54.0 * i, 0.0), style.INK, style.SMALL_TEXT, anchor="rn")
-        for i, text in enumerate(texts)
+        scene.Label(title, (600.0, _TITLE, 0.0), style.INK, style.TITLE_TEXT, anchor="cn"),
+        scene.Label(legend, (600.0, _LEGEND, 0.0), style.INK, style.SMALL_TEXT, anchor="cn"),
     ]
 
 
-def _axis(s: _Shown, camera: Camera) -> list[scene.Record]:
-    tip = _AXIS * s.u
+def _axis(s: _Shown) -> list[scene.Record]:
+    """The unit vector u, and the axis along it."""
     return [
-        scene.Arrow(-1.16 * s.u, tip, style.INK, 0.010, 4.4),
+        scene.Lines([-_AXIS * s.u, _AXIS * s.u], style.INK, style.THIN),
+        scene.Arrow((0.0, 0.0, 0.0), s.u, style.INK, 0.011, 4.0),
         scene.Points([(0.0, 0.0, 0.0)], style.INK, 7.0),
-        beyond(r"$u$", tip, s.u, camera),
     ]
 
 
-def _circle(s: _Shown) -> list[scene.Record]:
-    """The way of x, the plane of the circle, and the angle in its middle."""
-    count = max(round(abs(s.theta) / 0.05), 2) + 1
-    along = np.linspace(0.0, s.theta, count)
-    small = 0.27 * s.radius if s.radius > _ZERO else _TURN
-    # Past a full turn the arc opens, so that the turns are seen beside each other.
-    opening = small * (1.0 + 0.16 * np.maximum(np.abs(along) / (2.0 * np.pi) - 1.0, 0.0))
-    records = curved_arrow(s.around(opening, along), style.ARC_TEXT, 0.007, 3.6)
+def _disc(s: _Shown) -> list[scene.Record]:
+    """The plane of the circle, and the part of it that the angle takes."""
     if s.radius <= _ZERO:
-        return [*records, scene.Points([s.x], style.ARC, 12.0, rim=style.PAPER)]
+        return []
     rim = s.around(s.radius, np.linspace(0.0, 2.0 * np.pi, 181))
-    part = s.around(s.radius, np.clip(along, -2.0 * np.pi, 2.0 * np.pi))
-    for edge, alpha in ((rim, 0.07), (part, 0.20)):
+    part = s.around(s.radius, _along(np.clip(s.theta, -2.0 * np.pi, 2.0 * np.pi)))
+    records: list[scene.Record] = []
+    for edge, alpha in ((rim, 0.04), (part, 0.12)):
         fan = np.concatenate([s.center[None], edge])
         n = np.arange(1, len(edge))
         faces = np.stack([0 * n, n, n + 1], axis=-1)
         records.append(scene.Surface(fan, faces, style.ARC, material="flat", alpha=alpha))
-    records.append(scene.Lines(rim, style.ARC, style.EDGE, 0.9))
-    # The arrow stops short of the tip of Rx.
+    return [*records, scene.Lines(rim, style.ARC, style.EDGE, 0.9)]
+
+
+def _along(theta: float) -> np.ndarray:
+    return np.linspace(0.0, theta, max(round(abs(theta) / 0.05), 2) + 1)
+
+
+def _circle(s: _Shown, camera: Camera) -> list[scene.Record]:
+    """The way of x, and the angle in its middle."""
+    along = _along(s.theta)
+    small = 0.30 * s.radius if s.radius > _ZERO else _TURN
+    # Past a full turn the arc opens, so that the turns are seen beside each other.
+    opening = small * (1.0 + 0.16 * np.maximum(np.abs(along) / (2.0 * np.pi) - 1.0, 0.0))
+    # Nearer to the viewer than the arrows that it crosses.
+    lifted = s.around(opening, along) + 2.0 * _SHAFT * np.sign(camera.axes[2] @ s.u) * s.u
+    records = curved_arrow(lifted, style.ARC_TEXT, 0.010, 4.2)
+    if s.radius <= _ZERO:
+        return [*records, scene.Points([s.x], style.ARC, 12.0, rim=style.PAPER)]
+    part = s.around(s.radius, _along(np.clip(s.theta, -2.0 * np.pi, 2.0 * np.pi)))
     return [*records, *curved_arrow(part, style.ARC, 0.014)]
 
 
@@ -211,31 +234,82 @@ def _vectors(s: _Shown) -> list[scene.Record]:
             scene.Arrow(origin, s.x, style.BEFORE_EDGE, _SHAFT),
             scene.Arrow(origin, s.image, style.ARC, _SHAFT),
             scene.Lines([C, s.image], style.ARC_TEXT, style.EDGE),
-            scene.Lines([C, foot, s.image], style.INK, style.EDGE, dash=(7.0, 6.0)),
+            scene.Lines([C, foot], style.AXES_TEXT[0], style.CURVE, dash=(9.0, 6.0)),
+            # Where the dashes lie inside of the red part, the dot shows how far they go.
+            scene.Points([foot], style.AXES_TEXT[0], 6.0),
+            scene.Lines([foot, s.image], style.AXES_TEXT[1], style.CURVE, dash=(9.0, 6.0)),
         ]
     return records
 
 
 def _names(s: _Shown, camera: Camera) -> list[scene.Record]:
-    red, blue, green = style.AXES_TEXT[0], style.AXES_TEXT[2], style.AXES_TEXT[1]
+    red, green, blue = style.AXES_TEXT
+    axis = beyond(f"${_U}$", s.u, np.cross(s.u, camera.axes[2]), camera, room=50.0)
     if not s.x.any():
-        return [beyond(r"$x = Rx = 0$", np.zeros(3), camera.axes[0], camera, gap=100.0, room=140.0)]
+        name = beyond(rf"${_X} = R{_X} = 0$", np.zeros(3), camera.axes[0], camera, gap=100.0, room=140.0)
+        return [axis, name]
+    right = camera.axes[0]
     if s.radius <= _ZERO:
-        name = beyond(r"$x = Rx = (u\cdot x)\,u$", s.x, camera.axes[0], camera, gap=140.0, room=180.0)
-        return [name, beyond(r"$\theta$", s.center, -s.w, camera, color=style.ARC_TEXT, gap=90.0, room=180.0)]
+        name = beyond(rf"${_X} = R{_X} = {_ALONG}$", s.x, -right, camera, gap=140.0, room=180.0)
+        theta = beyond(r"$\theta$", s.center, -s.w, camera, color=style.ARC_TEXT, gap=60.0, room=90.0)
+        return [axis, name, theta]
+    C, foot = s.center, s.center + s.radius * np.cos(s.theta) * s.v
+    up = np.sign(camera.axes[1] @ s.u) * s.u
     middle = s.around(0.42 * s.radius, np.array([s.theta / 2.0]))[0]
     same = bool(np.allclose(s.x, s.image, atol=1e-9))
+    name = _X + ("" if s.leans else f" = {_ACROSS}") + (f" = R{_X}" if same else "")
     labels = [
-        beyond(r"$x = Rx$" if same else "$x$", s.x, s.x, camera, gap=34.0, room=90.0),
-        beyond(r"$x - (u\cdot x)\,u$", s.center + 0.56 * s.radius * s.v, s.u, camera, color=red, room=75.0),
-        beyond(r"$u\times x$", s.center + s.radius * s.w, s.w, camera, color=green, gap=40.0, room=100.0),
-        scene.Label(r"$\theta$", middle, style.ARC_TEXT, style.TEXT, room=60.0),
+        axis,
+        beyond(f"${name}$", s.x, s.x, camera, gap=30.0, room=60.0),
+        beyond(f"${_CROSS}$", C + s.radius * s.w, s.w, camera, color=green, gap=34.0, room=70.0),
     ]
+    if s.theta:
+        labels.append(scene.Label(r"$\theta$", middle, style.ARC_TEXT, style.TEXT, room=40.0))
+    if s.leans:
+        labels.append(beyond(f"${_ACROSS}$", C + 0.6 * s.radius * s.v, up, camera, color=red, room=50.0))
+        labels.append(_beside(f"${_ALONG}$", 0.62 * C, right, camera, blue, style.TEXT, 34.0))
     if not same:
-        labels.append(beyond(r"$Rx$", s.image, s.image, camera, color=style.ARC_TEXT, gap=34.0, room=60.0))
-    if np.linalg.norm(s.center) > _ZERO:
-        aside = np.cross(s.u, camera.axes[2])
-        labels.append(
-            beyond(r"$(u\cdot x)\,u$", 0.5 * s.center, aside, camera, color=blue, gap=68.0, room=140.0)
-        )
-    return list(labels)
+        labels.append(beyond(f"$R{_X}$", s.image, s.image, camera, color=style.ARC_TEXT, gap=32.0, room=60.0))
+    return [*labels, *_route_names(s, foot, camera, up)]
+
+
+def _route_names(s: _Shown, foot: np.ndarray, camera: Camera, up: np.ndarray) -> list[scene.Record]:
+    """The names of the two dashed parts; one that is too short to be seen has none."""
+    red, green, _ = style.AXES_TEXT
+    along, across = s.radius * np.cos(s.theta), s.radius * np.sin(s.theta)
+    labels: list[scene.Record] = []
+    # At a full turn it would be the red part itself.
+    if abs(along) > _SEEN and (along < 0.0 or abs(across) > _SEEN):
+        text = rf"$\cos\theta\;{_ACROSS}$"
+        if along < 0.0:
+            # At its end, away from the arrow of Rx and from the other part.
+            to_the_right = camera.axes[0] @ s.v >= 0.0
+            above = camera.axes[1] @ (s.image - foot) < 0.0
+            offset = (24.0 if to_the_right else -24.0, 14.0 if above else -14.0)
+            anchor = ("r" if to_the_right else "l") + ("b" if above else "t")
+            labels.append(scene.Label(text, foot, red, style.SMALL_TEXT, offset, anchor))
+        else:
+            labels.append(beyond(text, foot, -up, camera, color=red, size=style.SMALL_TEXT, room=50.0))
+    if abs(across) > _SEEN:
+        text, middle = rf"$\sin\theta\;{_CROSS}$", (foot + s.image) / 2.0
+        out = -s.v if along < _SEEN else s.v
+        # Inside of the circle nothing is in its way.
+        inside = np.linalg.norm(middle + _LONG * out - s.center) < s.radius
+        room = 0.0 if inside else 60.0
+        labels.append(_beside(text, middle, out, camera, green, style.SMALL_TEXT, room))
+    return labels
+
+
+def _beside(
+    text: str,
+    at: np.ndarray,
+    direction: np.ndarray,
+    camera: Camera,
+    color: str,
+    size: float,
+    room: float,
+) -> scene.Label:
+    """A long name to the left or to the right of a point, whichever a direction is seen to point to."""
+    to_the_right = camera.axes[0] @ direction >= 0.0
+    offset, anchor = (18.0, "lc") if to_the_right else (-18.0, "rc")
+    return scene.Label(text, at, color, size, (offset, 0.0), anchor, room=room)
