@@ -20,13 +20,15 @@ STEPS = 9
 _DOT = 12.0
 
 # On the page the middles of the islands stand over their determinants on the axis below.
-_MIDDLES, _ALONE, _LEVEL, _UNIT = {1: 912.0, -1: 288.0}, 600.0, 562.0, 160.0
-_AXIS = Axes((288.0, 98.0, 624.0, 1.0), (-1.0, 1.0), (0.0, 1.0))
-_STEPS = Axes((288.0, 98.0, 624.0, 1.0), (0.0, 1.0), (0.0, 1.0))
-_STRIP, _HEADING = 190.0, 858.0
+_MIDDLES, _ALONE, _LEVEL, _UNIT = {1: 912.0, -1: 288.0}, 600.0, 562.0, 153.0
+_AXIS = Axes((288.0, 88.0, 624.0, 1.0), (-1.0, 1.0), (0.0, 1.0))
+_STEPS = Axes((288.0, 88.0, 624.0, 1.0), (0.0, 1.0), (0.0, 1.0))
+_STRIP, _WAY, _HEADING = 206.0, 136.0, 846.0
+# From the middle of a letter of the strip to where the lines above and below it begin.
+_APART = 44.0
 # The rest is in units of an island: shores, heights of the letter F, the place of names.
 _SHORES = (0.61, 1.64)
-_SMALL, _LARGE, _NAME = 0.37, 0.84, 0.80
+_SMALL, _LARGE, _NAME, _TURN, _MIRROR = 0.37, 0.76, 0.82, 0.53, 0.56
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +58,9 @@ class _Island:
                 "Every point of a circle is a matrix of O(2), placed by its first column and shown by what "
                 "it does to the letter F. Right: the rotations, det = 1. Left: the reflections, det = -1, "
                 "which show the letter's back. On each island a path (arrow) leads on: from I to any A, from "
-                "D = diag(1, -1) to B = AD. Below: the straight way from A to B leaves O(2), and at det = 0 "
-                "the letter collapses."
+                "D = diag(1, -1) to B = AD. In the middle what they do: A turns by its angle, B mirrors at "
+                "a line at half of it. Below: the straight way from A to B leaves O(2), and at det = 0 the "
+                "letter collapses."
             ),
         )
     },
@@ -154,8 +157,8 @@ def _island(island: _Island, group: str, alone: bool) -> list[scene.Record]:
         small = Plane((float(origin[0]), float(origin[1])), _UNIT)
         records += small.glyph(A, fill, edge, size=size, width=style.THIN)
     way = sheet.at(core * place(island.path))
-    # The arrow ends where the dot begins.
-    seen = np.linalg.norm(way - way[-1], axis=-1) > _DOT
+    # The arrow ends just inside the dot, which is drawn over its tip.
+    seen = np.linalg.norm(way - way[-1], axis=-1) > 0.8 * _DOT
     records += plane.path(way[: np.flatnonzero(seen)[-1] + 1], style.ROUTE_1, 5.0) if seen.any() else []
     return records + _marked(sheet, island, core) + _heading(island, group, alone)
 
@@ -177,18 +180,29 @@ def _marked(sheet: Plane, island: _Island, core: float) -> list[scene.Record]:
     first, last = core * place(island.path[0]), core * place(island.marked)
     records: list[scene.Record] = []
     records += sheet.glyph(island.marked, fill, edge, size=_LARGE)
-    if island.sign < 0 and core == 1.0:
-        # (2.10): half the angle of the first column.
-        half = np.arctan2(last[1], last[0]) / 2.0
-        ends = 0.58 * plane.direction(np.array([half, half + np.pi]))
-        records.append(sheet.line(ends, style.INK, style.EDGE, dash=(11.0, 6.0)))
+    if core == 1.0:
+        records += _mirror(sheet, last) if island.sign < 0 else _turn(sheet, island)
     records.append(sheet.dots(first, edge, 8.0))
-    records.append(scene.Points(sheet.at(last)[None], style.ROUTE_1, _DOT, rim=style.PAPER, shaded=False))
+    records.append(sheet.dots(last, style.ROUTE_1, _DOT))
     name, start = ("A", "I") if island.sign > 0 else ("B", "D")
     if np.linalg.norm(first - last) > 0.3:
         records.append(_name(sheet, start, first, edge, core))
     records.append(_name(sheet, name, last, style.ROUTE_1_TEXT, core))
     return records
+
+
+def _mirror(sheet: Plane, column: np.ndarray) -> list[scene.Record]:
+    """The line of fixed points of a reflection; by (2.10) at half the angle of its first column."""
+    half = np.arctan2(column[1], column[0]) / 2.0
+    ends = _MIRROR * plane.direction(np.array([half, half + np.pi]))
+    return [sheet.line(ends, style.INK, style.EDGE)]
+
+
+def _turn(sheet: Plane, island: _Island) -> list[scene.Record]:
+    """The angle by which the marked rotation turns the letter, followed along the path."""
+    columns = island.path[:, :, 0]
+    angle = float(np.unwrap(np.arctan2(columns[:, 1], columns[:, 0]))[-1])
+    return sheet.turn((0.0, 0.0), _TURN, 0.0, angle, style.INK, width=style.EDGE)
 
 
 def _name(sheet: Plane, name: str, at: np.ndarray, color: str, core: float) -> scene.Label:
@@ -202,10 +216,16 @@ def _heading(island: _Island, group: str, alone: bool) -> list[scene.Record]:
     kinds = ("rotations", "reflections") if group != "GL2" else ("without a flip", "with a flip")
     kind = kinds[0] if island.sign > 0 else kinds[1]
     d = number(np.linalg.det(island.marked), 2)
-    relation = rf"\det = {d}" if group != "GL2" else rf"\det {'>' if island.sign > 0 else '<'} 0"
+    relation = f"= {d}" if group != "GL2" else f"{'>' if island.sign > 0 else '<'} 0"
     x = _ALONE if alone else _MIDDLES[island.sign]
     return [
-        scene.Label(rf"{kind}, ${relation}$", (x, _HEADING, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
+        scene.Label(
+            rf"{kind}, $\mathrm{{det}} {relation}$",
+            (x, _HEADING, 0.0),
+            style.INK,
+            style.TITLE_TEXT,
+            anchor="cn",
+        )
     ]
 
 
@@ -213,18 +233,28 @@ def _between(islands: list[_Island], group: str, way: np.ndarray, member: np.nda
     """The straight way from A to B, each step over its determinant, and the wall at 0."""
     wall, low = _AXIS.at(0.0, 0.0)[0], _AXIS.box[1]
     shore = _LEVEL - _SHORES[1] * _UNIT
-    walls = [[(wall, 832.0, 0.0), (wall, _STRIP + 42.0, 0.0)], [(wall, _STRIP - 42.0, 0.0), (wall, low, 0.0)]]
-    guides = [[(x, shore, 0.0), (x, low, 0.0)] for x in _MIDDLES.values()]
-    leaves = (_AXIS.box[0] + _AXIS.box[2] + 58.0, _STRIP, 0.0)
+    walls = [
+        [(wall, top, 0.0), (wall, bottom, 0.0)]
+        for top, bottom in ((_HEADING - 26.0, _STRIP + 88.0), (_WAY - 24.0, low))
+    ]
+    guides = [
+        [(x, top, 0.0), (x, bottom, 0.0)]
+        for x in _MIDDLES.values()
+        for top, bottom in ((shore, _STRIP + _APART), (_WAY - 24.0, low))
+    ]
     records: list[scene.Record] = [
         scene.Lines(joined(np.array(guides)), style.RULE, style.THIN),
-        scene.Lines(joined(np.array(walls)), style.WRONG, style.EDGE, dash=(9.0, 7.0)),
+        scene.Lines(joined(np.array(walls)), style.WRONG, style.EDGE),
         scene.Label("no path", (wall, _HEADING, 0.0), style.WRONG, style.TITLE_TEXT, anchor="cn"),
-        *_AXIS.frame([(v, f"${v}$") for v in (-1, 0, 1)], [], r"$\det$"),
         scene.Label(
-            r"$(1-t)\,A + t\,B$", (_AXIS.box[0] - 58.0, _STRIP, 0.0), style.INK, style.SMALL_TEXT, anchor="rc"
+            f"leaves ${group[:-1]}(2)$",
+            (wall, _STRIP + 54.0, 0.0),
+            style.WRONG,
+            style.SMALL_TEXT,
+            anchor="cn",
         ),
-        scene.Label(f"leaves ${group[:-1]}(2)$", leaves, style.WRONG, style.SMALL_TEXT, anchor="lc"),
+        *_AXIS.frame([(v, f"${v}$") for v in (-1, 0, 1)], [], r"$\mathrm{det}$"),
+        *_parameter(wall),
     ]
     for A, inside in zip(way, member, strict=True):
         d = float(np.linalg.det(A))
@@ -234,6 +264,20 @@ def _between(islands: list[_Island], group: str, way: np.ndarray, member: np.nda
         width = style.CURVE if abs(d) < 1e-9 else style.THIN
         records += sheet.glyph(A, fill, edge, size=_SMALL, width=width)
     return records
+
+
+def _parameter(middle: float) -> list[scene.Record]:
+    """How the time runs along the straight way: from A, which is on the right, to B."""
+    # As much as the texts need.
+    formula, end = 128.0, 56.0
+    start, stop = (_MIDDLES[1] - end, _WAY, 0.0), (_MIDDLES[-1] + end, _WAY, 0.0)
+    before, after = (middle + formula, _WAY, 0.0), (middle - formula, _WAY, 0.0)
+    texts = ((_MIDDLES[1], "$t = 0$"), (middle, r"$(1-t)\,A + t\,B$"), (_MIDDLES[-1], "$t = 1$"))
+    return [
+        scene.Lines([start, before], style.INK, style.THIN),
+        *plane.path(np.array([after, stop]), style.INK, style.THIN),
+        *(scene.Label(t, (x, _WAY, 0.0), style.INK, style.SMALL_TEXT) for x, t in texts),
+    ]
 
 
 def _alone(island: _Island) -> list[scene.Record]:
