@@ -48,6 +48,11 @@ class TestNumbers:
         of_q = np.abs((turn / 2.0 + 180.0) % 360.0 - 180.0)
         assert np.abs(shown["distances"] - np.stack([of_R, of_q], axis=-1)).max() < 1e-6
 
+    def test_every_solid_shows_its_front(self, plate):
+        look = np.array(double_cover.LOOK) / np.linalg.norm(double_cover.LOOK)
+        # The front of the letter looks along x; seen more aslant it can hardly be read.
+        assert (plate("B2.7").numbers["rotations"][:, :, 0] @ look).min() > 0.5
+
     @pytest.mark.parametrize("name", ["axis", "q"])
     def test_what_has_no_direction_is_refused(self, name):
         with pytest.raises(ValueError, match=rf"^{name} must have a length of .*; got .* Write .*"):
