@@ -69,6 +69,25 @@ def still() -> Drawing:
     """Nothing but paper."""
     return Drawing(Picture((), (64, 48)), {})
 '''
+_CHOICE = '''
+from typing import Annotated, Literal
+
+from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.render.scene import Picture
+
+
+@figure(
+    plates={"C1": Plate("One", (), "One."), "C2": Plate("Two", (), "Two.", {"view": "two"})},
+    time=Time("turn", 0, 90),
+)
+def choice(
+    view: Annotated[Literal["one", "two", "three"], Param("what to draw")] = "one",
+    turn: Annotated[float, Param("swept angle", "deg", 0, 90, only=("view", "one", "three"))] = 0.0,
+    bold: Annotated[bool, Param("thick lines", only=("view", "two"))] = False,
+) -> Drawing:
+    """Choose."""
+    return Drawing(Picture((), (64, 48)), {})
+'''
 _ENDINGS = ".png, .svg, .pdf, .gif, .apng or .mp4"
 
 
@@ -152,6 +171,35 @@ def test_help_of_a_figure_says_all(folder: Path) -> None:
         assert words in text
     for option in figure.RESERVED:
         assert f"--{option} " in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (
+            "--view two --turn 3",
+            "--turn has a part in the picture only with --view one or three. Leave it out, or write that",
+        ),
+        (
+            "--plate C2 --turn 3",
+            "--turn has a part in the picture only with --view one or three. Leave it out, or write that",
+        ),
+        ("--no-bold", "--bold has a part in the picture only with --view two. Leave it out, or write that"),
+        (
+            "--view two -o a.gif",
+            "a .gif sweeps --turn, which has a part in the picture only with --view one or three. "
+            "Write a .png",
+        ),
+    ],
+)
+def test_an_option_without_a_part_in_the_picture(folder: Path, arguments: str, line: str) -> None:
+    (folder.parent / "project/figures/ch9/choice.py").write_text(_CHOICE)
+    assert _refused(_run("choice", *arguments.split())) == f"lietool choice: {line}"
+    text = " ".join(_run("choice", "--help").stdout.split())
+    assert "swept angle [with --view one or three; 0 to 90 deg; default 0]" in text
+    assert "thick lines [with --view two; default --no-bold]" in text
+    for fine in ("--plate C2 --view three --turn 3", "--view two --bold", "--turn 3"):
+        assert _run("choice", *fine.split(), "--json").exit_code == 0
 
 
 def test_the_common_options_are_the_reserved_names(folder: Path) -> None:

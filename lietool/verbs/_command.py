@@ -51,6 +51,10 @@ class _Command(click.Command):
         # An option that is not given is None, for it has no default of its own.
         explicit = {name: value for name, value in given.items() if value is not None}
         params = (self.figure.plate_params(plate) if plate else {}) | explicit
+        for idle in self.figure.idle(self.figure.check(params), explicit):
+            raise click.UsageError(
+                f"{idle.option} has a part in the picture only {idle.where}. Leave it out, or write that"
+            )
         quality = _picture.Quality(size, dpi, theme, draft, backend)
         pace = _film.Pace(seconds, fps)
         _picture.make(self.figure, params, output, quality, pace=pace, numbers=json, swept=set(explicit))
@@ -170,10 +174,10 @@ SIZE, DPI, THEME = _Read(_size.parse), _Read(_size.dpi), click.Choice(_picture.T
 
 def _option(parameter: Parameter) -> click.Option:
     param, default = parameter.param, parameter.default
-    facts = [parameter.range] if parameter.range else []
+    facts = [fact for fact in (parameter.where, parameter.range) if fact]
     if parameter.kind == "bool":
         on, off = parameter.option, f"--no-{parameter.option[2:]}"
-        about = f"{param.help} [default {on if default else off}]"
+        about = f"{param.help} [{'; '.join([*facts, f'default {on if default else off}'])}]"
         return click.Option([f"{on}/{off}", parameter.name], default=None, help=about)
     if default is not None:
         facts.append(f"default {parameter.text(default)}")

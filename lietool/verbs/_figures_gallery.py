@@ -210,6 +210,8 @@ def _commands(item: _studio.Item) -> Iterator[entry.Command]:
 def _parameters(item: _studio.Item) -> Iterator[entry.Parameter]:
     values = item.parameters
     for parameter in item.declared.parameters:
+        if parameter.idle(values):
+            continue
         value = values[parameter.name]
         allowed = ", ".join(parameter.param.choices) or parameter.range.replace("-", "−")
         shown = "none" if value is None else parameter.text(value)

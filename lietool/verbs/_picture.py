@@ -132,7 +132,7 @@ def make(
         raise click.UsageError(
             f"--seconds and --fps are for films. Write one of {listed(_film.ENDINGS)} with --output"
         )
-    time = _film.paced(_time(figure, ending, swept), ending, pace) if moving else None
+    time = _film.paced(_time(figure, values, ending, swept), ending, pace) if moving else None
     # A film draws frames of its own.
     drawing = figure.draw(**values) if numbers or not time else None
     if target and time:
@@ -183,9 +183,14 @@ def listed(endings: tuple[str, ...]) -> str:
     return ", ".join(endings[:-1]) + " or " + endings[-1]
 
 
-def _time(figure: Figure, ending: str, swept: set[str]) -> Time:
+def _time(figure: Figure, values: Mapping[str, object], ending: str, swept: set[str]) -> Time:
     if figure.time is None:
         raise click.UsageError(f"{figure.name} has no time to animate. Write a .png")
+    for idle in figure.idle(values, [figure.time.param]):
+        raise click.UsageError(
+            f"a {ending} sweeps {idle.option}, which has a part in the picture only {idle.where}. "
+            "Write a .png"
+        )
     if figure.time.param in swept:
         option = "--" + figure.time.param.replace("_", "-")
         raise click.UsageError(
