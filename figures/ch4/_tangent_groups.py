@@ -75,17 +75,43 @@ class Dome:
         """The edge; shape (n, 3)."""
         return self.points[-1]
 
-    def outline(self, eye: np.ndarray) -> np.ndarray:
-        """Return where the lines of sight touch the surface, at most once on every ray; NaN elsewhere."""
-        facing = np.sum(self.normals * (eye - self.points), axis=-1)
-        turns = facing[:-1] * facing[1:] < 0.0
-        column = np.arange(facing.shape[1])
-        row = np.argmax(turns, axis=0)
-        before, after = facing[row, column], facing[row + 1, column]
-        part = np.where(turns.any(axis=0), before / np.where(before == after, 1.0, before - after), np.nan)
-        return self.points[row, column] + part[:, None] * (
-            self.points[row + 1, column] - self.points[row, column]
-        )
+    def contours(self, eye: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the outline, where the lines of sight touch the surface, and the edge, seen and hidden.
+
+        The outline ends on the edge, where the edge goes out of sight.  Each is one polyline, with NaN
+        between its parts.  Where the outline runs nearer than `least` to the edge, the edge alone is drawn.
+        """
+        facing = np.sum(self.normals * (eye - self.points), axis=-1)[:, :-1]
+        rim, column = self.rim[:-1], np.arange(facing.shape[1])
+        # The identity faces the eye, so that every ray which ends out of sight turns away once.
+        row = np.maximum(np.argmax(facing < 0.0, axis=0), 1)
+        f0, f1 = facing[row - 1, column], facing[row, column]
+        part = (f0 / np.where(f0 == f1, 1.0, f0 - f1))[:, None]
+        turns = (1.0 - part) * self.points[row - 1, column] + part * self.points[row, column]
+        hidden = facing[-1] < 0.0
+        if hidden.all() or not hidden.any():
+            none = np.full((1, 3), np.nan)
+            return (turns[[*column, 0]], none, self.rim) if hidden.all() else (none, self.rim, none)
+        ways: dict[bool, list[np.ndarray]] = {False: [], True: []}
+        outlines: list[np.ndarray] = []
+        first = int(np.flatnonzero(hidden & ~np.roll(hidden, 1))[0])
+        order = np.roll(column, -first)
+        for run in np.split(order, np.flatnonzero(np.diff(hidden[order].astype(int))) + 1):
+            before, after = (run[0] - 1) % len(column), (run[-1] + 1) % len(column)
+            edge = np.concatenate([_border(facing[-1], rim, before, run[0]), rim[run]])
+            edge = np.concatenate([edge, _border(facing[-1], rim, run[-1], after)])
+            away = np.linalg.norm(turns[run] - rim[run], axis=-1).max()
+            if hidden[run[0]] and away > least:
+                outlines.append(np.concatenate([edge[:1], turns[run], edge[-1:]]))
+            ways[bool(hidden[run[0]] and away > least)].append(edge)
+        none = [np.full((1, 3), np.nan)]
+        return joined(outlines or none), joined(ways[False] or none), joined(ways[True] or none)
+
+
+def _border(facing: np.ndarray, rim: np.ndarray, i: int, j: int) -> np.ndarray:
+    """The point (1, 3) between two of the edge where it goes out of sight."""
+    part = facing[i] / (facing[i] - facing[j])
+    return (rim[i] + part * (rim[j] - rim[i]))[None]
 
 
 @dataclass(frozen=True)

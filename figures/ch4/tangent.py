@@ -1,6 +1,6 @@
 """Figure 4.1 of the book."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
@@ -8,14 +8,14 @@ from numpy.typing import ArrayLike
 
 from lietool.figure import Drawing, Param, Plate, Time, figure
 from lietool.render import camera as cameras
-from lietool.render import scene, style
+from lietool.render import marks, scene, solids, style
 from lietool.render.globe import joined
 
 from . import _tangent_groups as groups
 
 # What is drawn of the curves, in t.
-_FROM, _TO = -0.6, 1.5
-_BOX = (0.0, 0.0, 1200.0, 900.0)
+_FROM, _TO = -0.25, 1.5
+_BOX = (20.0, 150.0, 1160.0, 688.0)
 _DIRECTION = (0.30, -1.0, 0.50)
 
 
@@ -28,7 +28,7 @@ _DIRECTION = (0.30, -1.0, 0.50)
                 "The diagonal matrices of determinant 1 with positive entries are a group, and a curved "
                 "surface. Its tangent plane at I is its Lie algebra, the matrices of trace 0. The curve "
                 "gamma (dashed) lies in the group and passes I with the velocity X. The straight line tX "
-                "leaves the group; exp lays it onto the group, as the one-parameter subgroup exp(tX)."
+                "leaves the group; exp (thin arrow) lays it onto the group, as the subgroup exp(tX)."
             ),
         )
     },
@@ -48,7 +48,7 @@ def tangent(
 
     What to look for: the dashed curve and the bold one leave I in the same
     direction, X, and only there they agree; X depends on the velocity alone.
-    The thin line shows how the straight line is wound onto the surface.
+    The thin arrow shows how exp winds the straight line onto the surface.
     The surface is no schematic: the three coordinates of a point are the entries
     of a matrix, turned so that I is at the top; for the quaternions, three of four.
     """
@@ -91,27 +91,45 @@ def _picture(chart: groups.Chart, curve: _Curve, t: float) -> scene.Picture:
     # A whole number of the grid's squares to each side of the identity.
     half = max(1.0, np.ceil(2.0 * float(np.abs(line).max()) + 0.1) / 2.0)
     seen = np.concatenate([dome.points.reshape(-1, 3), half * _SQUARE])
-    camera = cameras.around(seen, _DIRECTION, _BOX, 1.12)
-    camera = replace(camera, target=tuple(np.asarray(camera.target) - 0.05 * camera.height * camera.axes[1]))
-    outline = dome.outline(camera.eye)
+    camera = cameras.around(seen, _DIRECTION, _BOX, 1.03)
     records: list[scene.Record] = [
-        scene.Surface(
-            dome.points.reshape(-1, 3), dome.faces, style.GLASS, dome.normals.reshape(-1, 3), "glass"
-        ),
-        scene.Lines(dome.graticule, style.GLASS_EDGE, style.HAIR, style.GRATICULE_ALPHA),
-        scene.Lines(joined([dome.rim, outline]), style.GLASS_EDGE, style.EDGE),
+        *_surface(dome, camera),
         *_plane(half),
-        *_curves(chart, curve, t, 0.006 * camera.height),
+        *_curves(chart, curve, t, 0.0075 * camera.height),
+    ]
+    # What lies in the plane is seen in full: half of its thickness is under the plane.
+    above: list[scene.Record] = [
+        *_flat(chart, curve, t, 0.0075 * camera.height),
         *_names(chart, curve, t, half, camera),
         _named(dome, camera),
     ]
-    formulas = [
-        scene.Label(text, (1150.0, 120.0 - 56.0 * i, 0.0), color, style.SMALL_TEXT, anchor="rn")
-        for i, (text, color) in enumerate(
-            ((chart.group.name, style.GROUP_TEXT), (chart.group.algebra, style.ALGEBRA_TEXT))
-        )
+    views = scene.View(tuple(records), camera, _BOX), scene.View(tuple(above), camera, _BOX)
+    return scene.Picture((*views, scene.View(tuple(_formulas(chart)))))
+
+
+def _surface(dome: groups.Dome, camera: cameras.Camera) -> list[scene.Record]:
+    outline, seen, hidden = dome.contours(camera.eye, 0.02 * camera.height)
+    return [
+        scene.Surface(
+            dome.points.reshape(-1, 3), dome.faces, style.SHELL_FILLS[1], dome.normals.reshape(-1, 3), "glass"
+        ),
+        scene.Lines(dome.graticule, style.GROUP_TEXT, style.HAIR, 0.7 * style.GRATICULE_ALPHA),
+        scene.Lines(hidden, style.GROUP_TEXT, style.HAIR, 0.3),
+        scene.Lines(joined([seen, outline]), style.GROUP_TEXT, style.EDGE),
     ]
-    return scene.Picture((scene.View(tuple(records), camera), scene.View(tuple(formulas))))
+
+
+def _formulas(chart: groups.Chart) -> list[scene.Record]:
+    """What the group and the algebra are, one under the other at their signs of equality."""
+    texts = ((chart.group.name, style.GROUP_TEXT), (chart.group.algebra, style.ALGEBRA_TEXT))
+    records: list[scene.Record] = []
+    for i, (text, color) in enumerate(texts):
+        y = 116.0 - 54.0 * i
+        name, said = text.strip("$").split(" = ", 1)
+        records.append(scene.Label(f"${name}$", (86.0, y, 0.0), color, style.SMALL_TEXT, anchor="rn"))
+        records.append(scene.Label("$=$", (104.0, y, 0.0), color, style.SMALL_TEXT, anchor="cn"))
+        records.append(scene.Label(f"${said}$", (124.0, y, 0.0), color, style.SMALL_TEXT, anchor="ln"))
+    return records
 
 
 def _named(dome: groups.Dome, camera: cameras.Camera) -> scene.Label:
@@ -132,29 +150,45 @@ def _plane(half: float) -> list[scene.Record]:
     grid = [np.array([[x, -half, 0.0], [x, half, 0.0]]) for x in steps]
     grid += [line[:, [1, 0, 2]] for line in grid]
     corners = half * _SQUARE
+    # In small pieces, since what is translucent is sorted by depth.
+    n = 33
+    x, y = np.meshgrid(*2 * [np.linspace(-half, half, n)])
+    sheet = np.stack([x, y, 0.0 * x], axis=-1).reshape(-1, 3)
     return [
-        scene.Surface(corners, [[0, 1, 2], [0, 2, 3]], style.ALGEBRA, material="flat", alpha=0.07),
-        scene.Lines(joined(grid), style.ALGEBRA, style.HAIR, 0.25),
-        scene.Lines(np.concatenate([corners, corners[:1]]), style.ALGEBRA, style.THIN, 0.7),
+        scene.Surface(sheet, solids.grid_faces(n, n), style.BAND, material="flat", alpha=0.3),
+        scene.Lines(joined(grid), style.ALGEBRA, style.HAIR, 0.35),
+        scene.Lines(np.concatenate([corners, corners[:1]]), style.ALGEBRA, style.EDGE),
     ]
 
 
 def _curves(chart: groups.Chart, curve: _Curve, t: float, radius: float) -> list[scene.Record]:
     times = np.linspace(_FROM, _TO, 106)[:, None]
-    line = chart.level(times * curve.X)
-    tip = chart.level(curve.X)
-    marked = chart.exp(t * curve.X)
     return [
-        scene.Lines(line, style.ALGEBRA, style.EDGE),
         scene.Tube(chart.raised(times * curve.X, 0.8 * radius), style.GROUP, radius),
         scene.Lines(chart.exp(curve.log(times)), style.ROUTE_1, style.CURVE, dash=(11.0, 7.0), lift=0.01),
-        scene.Arrow(np.zeros(3), tip, style.ALGEBRA, 1.2 * radius),
-        scene.Lines(chart.unrolled(t * curve.X), style.INK, style.THIN),
-        scene.Points([np.zeros(3)], style.INK, 9.0),
-        scene.Points([chart.level(t * curve.X)], style.ALGEBRA, 12.5, rim=style.PAPER),
-        scene.Points([marked], style.GROUP, 12.5, rim=style.PAPER),
+        *_wound(chart, t * curve.X, radius),
+        scene.Points([chart.exp(t * curve.X)], style.GROUP, 12.5, rim=style.PAPER),
         scene.Points([chart.exp(curve.log(t))], style.ROUTE_1, 12.5, rim=style.PAPER),
     ]
+
+
+def _flat(chart: groups.Chart, curve: _Curve, t: float, radius: float) -> list[scene.Record]:
+    """What lies in the tangent plane: the straight line, its point, the vector."""
+    return [
+        scene.Lines(chart.level(np.array([[_FROM], [_TO]]) * curve.X), style.ALGEBRA, style.EDGE),
+        scene.Arrow(np.zeros(3), chart.level(curve.X), style.ALGEBRA, 1.2 * radius),
+        scene.Points([np.zeros(3)], style.INK, 9.0),
+        scene.Points([chart.level(t * curve.X)], style.ALGEBRA, 12.5, rim=style.PAPER),
+    ]
+
+
+def _wound(chart: groups.Chart, x: np.ndarray, radius: float) -> list[scene.Record]:
+    """How the end of the straight line goes while exp winds it onto the group: an arrow."""
+    way = chart.unrolled(x)
+    way[:, 2] += 1.5 * radius
+    # It leaves room for the balls at both ends.
+    away = np.minimum(np.linalg.norm(way - way[0], axis=-1), np.linalg.norm(way - way[-1], axis=-1))
+    return marks.curved_arrow(way[away > 3.0 * radius], style.INK, 0.35 * radius, 5.0)
 
 
 def _names(
@@ -179,6 +213,12 @@ def _names(
     )
     if t * float(np.linalg.norm(curve.X)) < 0.25:
         return names
+    way = chart.unrolled(t * curve.X)
+    if np.linalg.norm(way[0] - way[-1]) > 0.12 * camera.height:
+        early = way[len(way) // 3]
+        names.append(
+            scene.Label(r"$\exp$", early, style.INK, style.SMALL_TEXT, (22.0, 16.0), "lb", room=45.0)
+        )
     names.append(
         scene.Label("$tX$", chart.level(t * curve.X), blue, offset=(8.0, 20.0), anchor="lb", room=40.0)
     )

@@ -55,3 +55,24 @@ class TestSubgroup:
     def test_the_curve_agrees_with_it_only_without_a_bend(self):
         assert np.abs(shown(bend=0.0)["curve"] - shown(bend=0.0)["subgroup"]).max() < 1e-15
         assert np.abs(shown()["curve"] - shown()["subgroup"]).max() > 0.1
+
+
+class TestContours:
+    @pytest.mark.parametrize("group", GROUPS)
+    def test_the_outline_ends_on_the_edge_where_it_goes_out_of_sight(self, group):
+        from lietool.figures.ch4 import _tangent_groups as groups
+
+        dome = groups.Chart(groups.GROUPS[group]()).dome(1.5)
+        eye = np.array([3.0, -10.0, 5.0])
+        outline, seen, hidden = dome.contours(eye, 0.02)
+        assert np.isfinite(outline).all()
+        for end in (outline[0], outline[-1]):
+            for part in (seen, hidden):
+                assert np.nanmin(np.linalg.norm(part - end, axis=-1)) < 1e-12
+
+    def test_from_above_all_of_the_edge_is_seen(self):
+        from lietool.figures.ch4 import _tangent_groups as groups
+
+        dome = groups.Chart(groups.Diagonal()).dome(1.0)
+        outline, seen, hidden = dome.contours(np.array([0.0, 0.0, 50.0]), 0.02)
+        assert np.array_equal(seen, dome.rim) and np.isnan(outline).all() and np.isnan(hidden).all()
