@@ -9,6 +9,7 @@ from lietool.figure import Drawing
 from lietool.lie import affine, affine_classes, groups
 from lietool.mesh import shapes
 from lietool.render import camera, plane, scene, style
+from lietool.render.globe import joined
 from lietool.render.marks import letter
 
 from . import _groups_cube as cube
@@ -16,14 +17,18 @@ from . import _groups_marks as marks
 from . import _groups_order as order
 from . import _groups_words as words
 
-_CARD, _ICON = (360.0, 128.0), 110.0
+_CARD, _ICON = (360.0, 138.0), (122.0, 126.0)
+# Under the lowest row, and between two rows.
+_FOOT, _FREE = 88.0, 56.0
 # Sides of the cells of a strip, by the dimension of the space, and the gap between its parts.
-_CELLS, _GAP = {2: 24.0, 3: 16.0}, 10.0
+_CELLS, _GAP = {2: 24.0, 3: 15.0}, 9.0
+# Of the key: its cells, and from one row to the next.
+_KEY_CELL, _KEY_ROW = (38.0, 34.0), 44.0
 # Standard deviations of what the shape is deformed by: rotation, translation, logarithm of stretch.
-_SPREAD = (0.55, 0.30, 0.26)
+_SPREAD = (0.45, 0.20, 0.22)
 _NAMES = {"translation": "R", "dilation": "R+"}
-# Paler than elsewhere, since the shape after lies over it, and in grey has to stand out from it.
-_BEFORE = (style.BEFORE, style.BEFORE_EDGE, style.PAPER)
+# The walls are darker than the front: in an icon's size grey ones would be taken for the shape before.
+_AFTER = (style.AFTER, style.GREYS[1], style.BETWEEN_EDGE)
 _PARTS = ("rotation", "translation", "stretch")
 FREE, TIED, ZERO = "free", "tied", "zero"
 
@@ -64,14 +69,15 @@ def drawing(n: int, seed: int) -> Drawing:
     members = np.stack([affine_classes.project(params, name) for name in affine_classes.CLASSES])
     A = affine.phi_so(members)
     maps = groups.edges(nodes)
-    cards, links, page = order.placed(nodes, maps, _CARD)
+    # An arrow to the next column begins and ends half way to it: it goes straight up.
+    cards, links, page = order.placed(nodes, maps, _CARD, _FOOT, _FREE, (_CARD[0] + order.APART) / 4.0)
     crossings = marks.pass_behind(links)
     records: list[scene.Record] = []
     for c, space in zip(cards, spaces, strict=True):
         records += [*c.records(), *_text(c, space, n)]
     for link in links:
         records += marks.arrow(link)
-    records += [*_key(n), *words.legend(links, cards, extra=_legend())]
+    records += [*_key(n, page), *_looks(page), *words.legend(links, cards)]
     views = [scene.View(tuple(records)), *_icons(cards, A)]
     numbers = cube.numbers_of(nodes, maps)
     numbers |= {
@@ -87,13 +93,11 @@ def drawing(n: int, seed: int) -> Drawing:
 
 def _text(card: marks.Card, space: Subspace, n: int) -> list[scene.Record]:
     (x, y), wide = card.center, card.size[0]
-    left = x - wide / 2.0 + _ICON + 14.0
-    name = f"${marks.name(*card.node)}$"
-    right = x + wide / 2.0 - 16.0
+    left = x - wide / 2.0 + _ICON[0] + 20.0
     return [
-        marks.label(name, left, y + 14.0, "ln", size=style.TITLE_TEXT),
-        marks.label(f"dim ${space.dimension}$", right, y + 14.0, "rn", color=style.MUTED),
-        *strip(space.pattern, n, left, y - 30.0),
+        marks.label(f"${marks.name(*card.node)}$", left, y + 24.0, "ln", size=style.TITLE_TEXT),
+        marks.label(f"dim ${space.dimension}$", left, y - 15.0, "ln", color=style.MUTED),
+        *strip(space.pattern, n, left, y - 44.0),
     ]
 
 
@@ -109,7 +113,8 @@ def strip(pattern: tuple[str, ...], n: int, left: float, middle: float) -> list[
 
 
 def _row(pattern: tuple[str, ...], at: np.ndarray, middle: float, side: float) -> list[scene.Record]:
-    records = [record for x, kind in zip(at, pattern, strict=True) for record in _cell(x, middle, kind, side)]
+    size = (side, side)
+    records = [record for x, kind in zip(at, pattern, strict=True) for record in _cell(x, middle, kind, size)]
     tied = [x + side / 2.0 for x, kind in zip(at, pattern, strict=True) if kind == TIED]
     if tied:
         records.append(_line([(tied[0], middle), (tied[-1], middle)], style.ALGEBRA, style.CURVE))
@@ -118,14 +123,14 @@ def _row(pattern: tuple[str, ...], at: np.ndarray, middle: float, side: float) -
     return records
 
 
-def _cell(x: float, middle: float, kind: str, side: float) -> list[scene.Record]:
-    low, high = middle - side / 2.0, middle + side / 2.0
-    ring = [(x, low), (x + side, low), (x + side, high), (x, high), (x, low)]
+def _cell(x: float, middle: float, kind: str, size: tuple[float, float]) -> list[scene.Record]:
+    low, high, right = middle - size[1] / 2.0, middle + size[1] / 2.0, x + size[0]
+    ring = [(x, low), (right, low), (right, high), (x, high), (x, low)]
     corners = [(*p, 5.0) for p in ring[:4]]
     fill = style.ALGEBRA if kind == FREE else style.PAPER
     return [
         scene.Surface(corners, [[0, 1, 2], [0, 2, 3]], fill, material="flat"),
-        _line(ring, style.PAPER if kind == FREE else style.RULE, style.THIN),
+        _line(ring, style.PAPER if kind == FREE else style.BEFORE_EDGE, style.THIN),
     ]
 
 
@@ -133,49 +138,74 @@ def _line(points: list[tuple[float, float]], color: str, width: float) -> scene.
     return scene.Lines([(*p, 6.0) for p in points], color, width)
 
 
-def _key(n: int) -> list[scene.Record]:
-    """What the cells of a strip stand for."""
-    offsets, count = _offsets(n), parts(n)
-    left, right, y = 40.0, 930.0, 838.0
-    records = strip((FREE,) * len(offsets), n, left, y)
-    first = 0
-    for i, (name, word, size) in enumerate(zip("xlY", _PARTS, count, strict=True)):
-        x = left + 0.5 * (offsets[first] + offsets[first + size - 1] + _CELLS[n])
-        first += size
-        down = y - 8.0 - 44.0 * i
-        records.append(marks.label(f"${name}$", float(x), y - 44.0))
-        records.append(marks.label(f"${name}$", right, down))
-        records.append(marks.label(word, right + 28.0, down, "ln"))
-    records.append(marks.label(r"$p \mapsto \exp(x)\,\exp(Y\,)\,p + l$", left, y - 96.0, "ln"))
-    return records
+def _indices(n: int) -> tuple[list[str], list[str], list[str]]:
+    """What the cells of a strip are, in order: components of a vector, entries of a symmetric matrix.
+
+    In the plane a rotation is one number, which needs no index.
+    """
+    axes = [str(i + 1) for i in range(n)]
+    upper = [axes[i] + axes[j] for i, j in zip(*np.triu_indices(n), strict=True)]
+    return axes if n == 3 else [""], axes, upper
 
 
-def _legend(side: float = 16.0) -> list[words.Mark]:
+def _key(n: int, page: tuple[float, float]) -> list[scene.Record]:
+    """What the cells of a strip stand for, from left to right, and the map that they make."""
+    wide, x, y = _KEY_CELL[0], 30.0, page[1] - 58.0
+    turn = r"\mathbf{x}" if n == 3 else "x"
+    records: list[scene.Record] = []
+    for name, word, indices in zip((turn, r"\mathbf{l}", "Y"), _PARTS, _indices(n), strict=True):
+        records.append(marks.label(f"${name}$", x, y - 10.0, "ln"))
+        for i, index in enumerate(indices):
+            left = x + 32.0 + wide * i
+            records += _cell(left, y, FREE, _KEY_CELL)
+            if index:
+                records.append(marks.label(f"${index}$", left + wide / 2.0, y - 10.0, color=style.PAPER))
+        records.append(marks.label(word, x + 32.0 + wide * len(indices) + 12.0, y - 10.0, "ln"))
+        y -= _KEY_ROW
+    text = rf"$\mathbf{{p}} \mapsto \exp({turn})\,\exp(Y)\,\mathbf{{p}} + \mathbf{{l}}$"
+    return [*records, marks.label(text, x, y - 12.0, "ln")]
+
+
+def _looks(page: tuple[float, float], side: float = 24.0) -> list[scene.Record]:
     """What the looks of a cell mean."""
-
-    def mark(pattern: tuple[str, ...], text: str) -> words.Mark:
-        at = side * np.arange(len(pattern))
-        return lambda x, y: _row(pattern, x + at, y, side), side * len(pattern), text
-
-    return [mark((FREE,), "free"), mark((TIED, ZERO, TIED), "equal"), mark((ZERO,), "zero")]
+    records: list[scene.Record] = []
+    x, y = page[0] - 222.0, page[1] - 58.0
+    for pattern, word in (((FREE,), "free"), ((ZERO,), "zero"), ((TIED, ZERO, TIED), "equal")):
+        at = x + side * (np.arange(len(pattern)) + (3 - len(pattern)) / 2.0)
+        records += _row(pattern, at, y, side)
+        records.append(marks.label(word, x + 3.0 * side + 18.0, y - 10.0, "ln"))
+        y -= _KEY_ROW
+    return records
 
 
 def _icons(cards: list[marks.Card], A: np.ndarray) -> list[scene.View]:
     """The shape before and after one member of each class, all seen from the same place."""
     n = A.shape[-1] - 1
-    boxes = [(c.center[0] - c.size[0] / 2.0 + 5.0, c.center[1] - _ICON / 2.0, _ICON, _ICON) for c in cards]
+    boxes = [(c.center[0] - c.size[0] / 2.0 + 13.0, c.center[1] - _ICON[1] / 2.0, *_ICON) for c in cards]
     if n == 2:
         return [_flat_icons(boxes, A)]
     corners = shapes.letter_solid()[0]
     seen = np.concatenate([corners, *(corners @ B[:3, :3].T + B[:3, 3] for B in A)])
-    lens = camera.around(seen, (1.0, 0.42, 0.36), boxes[0], 1.02)
-    before = tuple(letter(np.eye(3), colors=_BEFORE))
+    lens = camera.around(seen, (1.0, 0.42, 0.36), boxes[0], 1.03)
     # One view over the other, so that what comes after lies in front.
     return [
         scene.View(shown, lens, box)
         for box, B in zip(boxes, A, strict=True)
-        for shown in (before, tuple(letter(B[:3, :3], B[:3, 3])))
+        for shown in (_outlined(), tuple(letter(B[:3, :3], B[:3, 3], colors=_AFTER)))
     ]
+
+
+def _outlined() -> tuple[scene.Record, ...]:
+    """The solid before, as a pale outline that hides its own back."""
+    vertices, faces, _ = shapes.letter_solid()
+    half = len(vertices) // 2
+    front, back = vertices[:half], vertices[half:]
+    rims = [np.concatenate([rim, rim[:1]]) for rim in (front, back)]
+    edges = joined([*rims, *np.stack([front, back], axis=1)])
+    return (
+        scene.Surface(vertices, faces, style.PAPER, material="flat"),
+        scene.Lines(edges, style.BEFORE_EDGE, style.THIN),
+    )
 
 
 def _flat_icons(boxes: list[tuple[float, float, float, float]], A: np.ndarray) -> scene.View:
@@ -184,6 +214,6 @@ def _flat_icons(boxes: list[tuple[float, float, float, float]], A: np.ndarray) -
     records: list[scene.Record] = []
     for box, B in zip(boxes, A, strict=True):
         ground = plane.fit(seen, box)
-        records += ground.glyph(np.eye(3), style.BEFORE, style.BEFORE_EDGE, width=style.THIN)
+        records += ground.glyph(np.eye(3), style.PAPER, style.BEFORE_EDGE, width=style.THIN)
         records += ground.glyph(B, style.AFTER, style.AFTER_EDGE, width=style.THIN, alpha=0.85)
     return scene.View(tuple(records))

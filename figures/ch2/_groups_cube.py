@@ -14,9 +14,9 @@ from . import _groups_marks as marks
 from . import _groups_words as words
 
 # A step to the right, up and back, on the page; and where the corner without any of them is.
-_STEPS = np.array([[552.0, 0.0], [0.0, 412.0], [370.0, 222.0]])
-_CARD = (214.0, 100.0)
-_BOTTOM = 156.0
+_STEPS = np.array([[546.0, 0.0], [0.0, 412.0], [366.0, 222.0]])
+_CARD = (220.0, 104.0)
+_BOTTOM = 162.0
 # Between a name and the dimension beside it.
 _BETWEEN = 14.0
 
@@ -59,7 +59,7 @@ _MOVES = {
     "S^1": r"$v \mapsto z^2\,v$",
     "DCN": r"$v \mapsto p_0^2\,v + 2\,p_0\,p_1$",
     "S^3": r"$v \mapsto q\,v\,\bar{q}$",
-    "DQ": r"$v \mapsto z\,v\,\bar{z} + 2\,w\,\bar{z}$",
+    "DQ": r"$v \mapsto q\,v\,\bar{q} + 2\,w\,\bar{q}$",
 }
 
 
@@ -71,7 +71,7 @@ _ELEMENTS = {
     ("S^1", 2): "z",
     ("S^3", 3): "q",
     ("DCN", 2): r"p_0 + p_1\varepsilon",
-    ("DQ", 3): r"z + w\,\varepsilon",
+    ("DQ", 3): r"q + w\,\varepsilon",
     **{("SO", n): "R" for n in (2, 3)},
     **{("SE", n): "A" for n in (2, 3)},
 }
@@ -109,7 +109,7 @@ def drawing(nodes: Sequence[Node], directions: Sequence[Direction], shown: str) 
         axis = int(np.flatnonzero(corners[i] != corners[j])[0])
         points = marks.trimmed(places[[i, j]], cards[i], cards[j])
         depth = (float(corners[i, 2]), float(corners[j, 2]))
-        links.append(marks.Link(m, points, depth, directions[axis].label(m)))
+        links.append(marks.Link(m, points, depth, directions[axis].label(m), axis))
     crossings = marks.pass_behind(links)
     records: list[scene.Record] = []
     for c in cards:
@@ -117,7 +117,8 @@ def drawing(nodes: Sequence[Node], directions: Sequence[Direction], shown: str) 
     for link in links:
         records += marks.arrow(link)
     records += words.place_labels(links, cards)
-    records += words.legend(links, cards)
+    dimensions: words.Mark = (lambda x, y: (), 0.0, "dim for $n = 2, 3$")
+    records += words.legend(links, cards, extra=[dimensions] if shown == "both" else [])
     numbers = numbers_of(nodes, [link.map for link in links], (2, 3) if shown == "both" else None)
     numbers |= {"corner": corners, "crossings": crossings}
     return Drawing(scene.Picture((scene.View(tuple(records)),)), numbers)
@@ -139,9 +140,9 @@ def _text(card: marks.Card, shown: str) -> list[scene.Record]:
     wide = marks.extent(title, style.TITLE_TEXT)[0] + _BETWEEN
     left = x - (wide + marks.extent(dimension)[0]) / 2.0
     return [
-        marks.label(title, left, y + 10.0, "ln", size=style.TITLE_TEXT),
-        marks.label(dimension, left + wide, y + 10.0, "ln", color=style.MUTED),
-        marks.label(f"${_ELEMENTS[card.node]}$", x, y - 34.0),
+        marks.label(title, left, y + 7.0, "ln", size=style.TITLE_TEXT),
+        marks.label(dimension, left + wide, y + 7.0, "ln", color=style.MUTED),
+        marks.label(f"${_ELEMENTS[card.node]}$", x, y - 36.0),
     ]
 
 

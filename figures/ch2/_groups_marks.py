@@ -19,7 +19,11 @@ _CLEAR, SHEET = 9.0, 9.0
 _ROUND = 12.0
 _HEAD, _WIDE, _HOOK = 19.0, 15.0, 6.0
 # By how much a line that passes behind another is broken, to each side.
-_BREAK = 15.0
+_BREAK = 9.0
+# Where the next sheet of a card is: to the back, but below, so that arrows leave from the front one.
+_NEXT = np.array([SHEET, -SHEET])
+# From the outer frame of what is compact to its inner one; of the small card in a legend.
+_INSET, _SMALL_INSET = 6.0, 4.0
 # How far from a corner an arrow begins to turn.
 _BEND = 46.0
 # The outline of a set that is no group.
@@ -48,8 +52,10 @@ def normal(node: str, n: int | str) -> str:
         raise ValueError(f"_groups_marks.normal: node must be a product; got {node}. See groups.GROUPS.")
     if product.normal in groups.GROUPS:
         return name(product.normal, n)
-    words = {"eps": r"\varepsilon\,", "Im": r"\mathrm{Im}\,", "+": "+", **_LETTERS}
-    return f"({''.join(words.get(word, word) for word in product.normal.split())})"
+    words = {"eps": r"\,\varepsilon", "Im": r"\mathrm{Im}\,", "+": "+", **_LETTERS}
+    # The dual unit comes last, as in the elements: it does not commute with all of them.
+    parts = sorted(product.normal.split(), key=lambda word: word == "eps")
+    return f"({''.join(words.get(word, word) for word in parts)})"
 
 
 @cache
@@ -74,18 +80,22 @@ class Card:
     def box(self) -> tuple[float, float, float, float]:
         """Left, lower, right and upper edge, with all sheets."""
         (x, y), (w, h), more = self.center, self.size, SHEET * (self.sheets - 1)
-        return x - w / 2, y - h / 2, x + w / 2 + more, y + h / 2 + more
+        return x - w / 2, y - h / 2 - more, x + w / 2 + more, y + h / 2
 
     def records(self, alpha: float = 1.0) -> list[scene.Record]:
-        """Return the card: filled and framed strongly if compact, one sheet for each component."""
+        """Return the card: tinted and framed twice if compact, one sheet for each component."""
         records: list[scene.Record] = []
         for k in reversed(range(self.sheets)):
-            outline = _rounded(np.asarray(self.center) + SHEET * k, self.size, 4.0 - 0.1 * k)
+            center, z = np.asarray(self.center) + _NEXT * k, 4.0 - 0.1 * k
+            outline = _rounded(center, self.size, z)
             faces = [[0, i, i + 1] for i in range(1, len(outline) - 2)]
-            fill, width = (style.BETWEEN, style.CURVE) if self.compact else (style.PAPER, style.EDGE)
+            fill = style.BAND if self.compact else style.PAPER
             records.append(scene.Surface(outline, faces, fill, material="flat"))
-            edge = style.GROUP_TEXT if self.compact else style.MUTED
-            records.append(scene.Lines(outline, edge, width, dash=None if self.group else _DASH))
+            records.append(scene.Lines(outline, style.MUTED, style.EDGE, dash=None if self.group else _DASH))
+            if self.compact:
+                inset = _INSET if self.size[0] > 60.0 else _SMALL_INSET
+                inner = _rounded(center, (self.size[0] - 2.0 * inset, self.size[1] - 2.0 * inset), z, inset)
+                records.append(scene.Lines(inner, style.MUTED, style.THIN))
         return records
 
 
@@ -96,14 +106,15 @@ def card(node: Node, center: ArrayLike, size: tuple[float, float]) -> Card:
     return Card(node, (float(x), float(y)), size, record.compact, record.components, record.is_group)
 
 
-def _rounded(center: np.ndarray, size: tuple[float, float], z: float) -> np.ndarray:
-    """A closed rounded rectangle, counter-clockwise."""
-    half = np.asarray(size) / 2.0 - _ROUND
+def _rounded(center: np.ndarray, size: tuple[float, float], z: float, inset: float = 0.0) -> np.ndarray:
+    """A closed rounded rectangle, counter-clockwise, with the corners of one that is larger by an inset."""
+    around = _ROUND - inset
+    half = np.asarray(size) / 2.0 - around
     turn = np.linspace(0.0, np.pi / 2.0, 9)
     corners = []
     for k, (sx, sy) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
         angle = turn + k * np.pi / 2.0
-        arc = _ROUND * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        arc = around * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         corners.append(center + half * (sx, sy) + arc)
     ring = np.concatenate([*corners, corners[0][:1]])
     return np.column_stack([ring, np.full(len(ring), z)])
@@ -111,12 +122,16 @@ def _rounded(center: np.ndarray, size: tuple[float, float], z: float) -> np.ndar
 
 @dataclass(eq=False)
 class Link:
-    """An arrow between two cards along points of the page; `depth` says which passes behind at a crossing."""
+    """An arrow between two cards along points of the page; `depth` says which passes behind at a crossing.
+
+    The labels of one `family` like to be at the same part of their arrows.
+    """
 
     map: groups.Map
     points: np.ndarray
     depth: tuple[float, float] = (0.0, 0.0)
     label: str = ""
+    family: int | None = None
     gaps: list[float] = field(default_factory=list)
 
     @property
@@ -196,7 +211,7 @@ def arrow(link: Link) -> list[scene.Record]:
         records.append(scene.Surface(_flat(corners, 1.0), [[0, 1, 2], [0, 2, 3]], color, material="flat"))
     shaft = points.copy()
     shaft[-1] = tips[-1] - 0.7 * _HEAD * along
-    pieces = _broken(shaft, link.gaps)
+    pieces = _broken(shaft, _along(points, link.gaps))
     if not covering:
         first = points[1] - points[0]
         first = first / np.linalg.norm(first)
@@ -222,12 +237,19 @@ def _bent(points: np.ndarray) -> np.ndarray:
     return np.concatenate([*pieces, points[-1:]])
 
 
-def _broken(points: np.ndarray, gaps: Iterable[float]) -> list[np.ndarray]:
-    """A polyline without a piece around each place, given as a segment's number and the part of it."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
-    length = np.concatenate([[0.0], np.cumsum(steps)])
-    places = sorted(float(np.interp(gap, np.arange(len(points)), length)) for gap in gaps)
-    ends = [0.0, *(place + side for place in places for side in (-_BREAK, _BREAK)), float(length[-1])]
+def _lengths(points: np.ndarray) -> np.ndarray:
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=-1))])
+
+
+def _along(points: np.ndarray, gaps: Iterable[float]) -> list[float]:
+    """How far along a polyline places are that are given as a segment's number and the part of it."""
+    return sorted(float(np.interp(gap, np.arange(len(points)), _lengths(points))) for gap in gaps)
+
+
+def _broken(points: np.ndarray, gaps: Sequence[float]) -> list[np.ndarray]:
+    """A polyline without a piece around each place, given by how far along it is."""
+    length = _lengths(points)
+    ends = [0.0, *(gap + side for gap in gaps for side in (-_BREAK, _BREAK)), float(length[-1])]
     pieces = []
     for low, high in zip(ends[::2], ends[1::2], strict=True):
         if high <= low:

@@ -15,7 +15,7 @@ from . import _groups_marks as marks
 from . import _groups_words as words
 
 # Between two cards of a row, between a card and an arrow that passes, and between the arrows of a card.
-_APART, _ASIDE, _PORT = 28.0, 26.0, 30.0
+APART, _ASIDE, _PORT = 28.0, 26.0, 30.0
 # How far from the middle of a card an arrow begins if it leads aside.
 _SIDE = 40.0
 _HIGH = 88.0
@@ -83,17 +83,25 @@ def drawing(nodes: Sequence[Node]) -> Drawing:
 
 
 def placed(
-    nodes: Sequence[Node], maps: Sequence[groups.Map], size: tuple[float, float], foot: float = _FOOT
+    nodes: Sequence[Node],
+    maps: Sequence[groups.Map],
+    size: tuple[float, float],
+    foot: float = _FOOT,
+    free: float = _FREE,
+    side: float = _SIDE,
 ) -> tuple[list[marks.Card], list[marks.Link], tuple[float, float]]:
-    """Return cards and arrows in layers, and the page that holds them: larger if they need it."""
+    """Return cards and arrows in layers, and the page that holds them: larger if they need it.
+
+    `free` is the least between two rows; an arrow that leads aside begins `side` from the middle of a card.
+    """
     at = {node: i for i, node in enumerate(nodes)}
     arrows = [(at[m.source, m.n[0]], at[m.target, m.n[1]]) for m in maps if m.n]
     edges = size[0] + 2.0 * marks.MARGIN + marks.SHEET
     width = marks.PAGE[0] - edges
-    found = layout.arrange(len(nodes), arrows, size[0] + _APART, size[0] / 2.0 + _ASIDE, width)
+    found = layout.arrange(len(nodes), arrows, size[0] + APART, size[0] / 2.0 + _ASIDE, width)
     rows = int(found.level.max()) + 1
     span = float(np.ptp(np.concatenate([found.x, *(way[:, 0] for way in found.ways)]))) + edges
-    tall = foot + rows * size[1] + (rows - 1) * _FREE + 2.0 * marks.MARGIN
+    tall = foot + rows * size[1] + (rows - 1) * free + 2.0 * marks.MARGIN
     grown = max(1.0, span / marks.PAGE[0], tall / marks.PAGE[1])
     page = (marks.PAGE[0] * grown, marks.PAGE[1] * grown)
     low, high = foot + size[1] / 2.0, page[1] - marks.MARGIN - size[1] / 2.0 - 10.0
@@ -112,7 +120,7 @@ def placed(
         marks.Link(m, _route(np.array([point(*p) for p in way]), size[1]))
         for m, way in zip(maps, found.ways, strict=True)
     ]
-    _apart(links, cards, arrows)
+    _apart(links, cards, arrows, side)
     for link in links:
         link.points = _taut(link.points, cards)
     return cards, links, page
@@ -148,7 +156,7 @@ def _clear(a: np.ndarray, b: np.ndarray, cards: Sequence[marks.Card]) -> bool:
 
 
 def _apart(
-    links: Sequence[marks.Link], cards: Sequence[marks.Card], arrows: Sequence[tuple[int, int]]
+    links: Sequence[marks.Link], cards: Sequence[marks.Card], arrows: Sequence[tuple[int, int]], side: float
 ) -> None:
     """Let the arrows of a card begin and end side by side, each as near as it can to where it leads."""
     ways = [link.points.copy() for link in links]
@@ -160,7 +168,7 @@ def _apart(
                 continue
             mine.sort(key=lambda k, other=other: float(ways[k][other][0]))
             step = min(_PORT, 2.0 * reach / max(len(mine) - 1, 1)) * np.arange(len(mine))
-            wanted = np.array([np.clip(ways[k][other][0] - c.center[0], -_SIDE, _SIDE) for k in mine])
+            wanted = np.array([np.clip(ways[k][other][0] - c.center[0], -side, side) for k in mine])
             ports = np.clip(layout.rising(wanted - step), -reach, reach - step[-1]) + step
             for k, x in zip(mine, ports, strict=True):
                 links[k].points[end] = (c.center[0] + x, edge)

@@ -11,6 +11,11 @@ from . import _groups_marks as marks
 # From an arrow to the box of its label.
 _BESIDE = 7.0
 _OPEN = "not compact"
+# Between two marks of a legend, at the least.
+_TIGHT = 24.0
+_ROUNDS = 2
+# Along an arrow, where its label may be.
+_PARTS = np.linspace(0.14, 0.86, 37)
 Mark = tuple[Callable[[float, float], Sequence[scene.Record]], float, str]
 """What a legend shows from (x, y) to the right, how wide it is, and what it means."""
 
@@ -19,24 +24,55 @@ def place_labels(
     links: Sequence[marks.Link], cards: Sequence[marks.Card], page: tuple[float, float] = marks.PAGE
 ) -> list[scene.Record]:
     """Return the arrows' labels, each beside its own arrow where it meets no card, arrow or other label."""
-    taken = [np.array(c.box) for c in cards]
-    inked = [_ink(link) for link in links]
-    records: list[scene.Record] = []
-    # The longest first: they have the least choice.
-    for link in sorted((link for link in links if link.label), key=lambda link: -marks.extent(link.label)[0]):
+    named = [link for link in links if link.label]
+    inked = {id(link): _ink(link) for link in links}
+    boxes: dict[int, np.ndarray] = {}
+
+    def costs(link: marks.Link) -> tuple[np.ndarray, np.ndarray]:
         half = np.array(marks.extent(link.label)) / 2.0
-        others = np.concatenate(
-            [np.zeros((0, 2)), *(ink for other, ink in zip(links, inked, strict=True) if other is not link)]
-        )
-        own = inked[list(links).index(link)]
-        places = [
-            (p, liked + _trouble(p, half, taken, own, others)) for p, liked in _places(link, half, page)
-        ]
-        center = min(places, key=lambda place: place[1])[0]
-        taken.append(np.concatenate([center - half, center + half]))
+        lines = [ink for other, ink in inked.items() if other != id(link)]
+        others = np.concatenate([np.zeros((0, 2)), *lines])
+        taken = [np.array(c.box) for c in cards] + [box for of, box in boxes.items() if of != id(link)]
+        centers, liked = (np.array(column) for column in zip(*_places(link, half, page), strict=True))
+        places = np.hstack([centers - half, centers + half])
+        return places, liked + _trouble(places, taken, inked[id(link)], others)
+
+    families = _families(named)
+    # Once more when each can see all others.
+    for _ in range(_ROUNDS):
+        for family in families:
+            found = [costs(link) for link in family]
+            liked = int(np.argmin(np.sum([cost for _, cost in found], axis=0)))
+            for link, (places, cost) in zip(family, found, strict=True):
+                if len(family) > 1:
+                    cost = cost + _apart(liked, len(cost))
+                boxes[id(link)] = places[int(np.argmin(cost))]
+    records: list[scene.Record] = []
+    for link in named:
+        x, y = (boxes[id(link)][:2] + boxes[id(link)][2:]) / 2.0
         color = style.GROUP_TEXT if link.map.kind == "covering" else style.INK
-        records.append(marks.label(link.label, float(center[0]), float(center[1]), "cc", color))
+        records.append(marks.label(link.label, float(x), float(y), "cc", color))
     return records
+
+
+def _families(named: Sequence[marks.Link]) -> list[list[marks.Link]]:
+    """Links whose labels are placed together; the least steep first, for theirs can hardly move."""
+    blocks: dict[int, list[marks.Link]] = {}
+    for link in named:
+        blocks.setdefault(id(link) if link.family is None else link.family, []).append(link)
+
+    def order(block: Sequence[marks.Link]) -> tuple[float, float]:
+        x, y = np.abs(block[0].points[-1] - block[0].points[0])
+        longest = max(marks.extent(link.label)[0] for link in block)
+        return round(float(np.arctan2(y, x)), 3), -longest
+
+    return sorted(blocks.values(), key=order)
+
+
+def _apart(liked: int, count: int) -> np.ndarray:
+    """What it costs to be elsewhere than the rest of the family, for the places of one straight arrow."""
+    part, side = np.divmod(np.arange(count), 2)
+    return 400.0 * np.abs(part - liked // 2) / len(_PARTS) + 90.0 * (side != liked % 2)
 
 
 def _ink(link: marks.Link) -> np.ndarray:
@@ -53,26 +89,32 @@ def _places(
         across = np.array([-along[1], along[0]])
         # Above a line rather than below it, and on the right of one that is upright.
         across = across if across @ (0.1, 1.0) > 0.0 else -across
-        for t in np.linspace(0.14, 0.86, 37):
+        for t in _PARTS:
             for side in (1.0, -1.0):
-                off = _BESIDE + float(np.abs(across) @ half)
-                center = a + t * (b - a) + side * off * across
+                # Beside the line with its edge, or with the corner that is nearest to a slanting one.
+                aside = half * np.clip(2.0 * across, -1.0, 1.0)
+                clear = _BESIDE + float(np.abs(across) @ half - across @ aside)
+                center = a + t * (b - a) + side * (aside + clear * across)
                 outside = np.maximum(marks.MARGIN + half - center, 0.0) + np.maximum(
                     center + half + marks.MARGIN - page, 0.0
                 )
-                yield center, 60.0 * abs(t - 0.5) + 12.0 * (side < 0.0) + 1e3 * float(outside.sum())
+                yield center, 60.0 * abs(t - 0.5) + 30.0 * (side < 0.0) + 1e3 * float(outside.sum())
 
 
 def _trouble(
-    center: np.ndarray, half: np.ndarray, taken: Sequence[np.ndarray], own: np.ndarray, others: np.ndarray
-) -> float:
-    low, high = center - half, center + half
+    places: np.ndarray, taken: Sequence[np.ndarray], own: np.ndarray, others: np.ndarray
+) -> np.ndarray:
+    """What each of the boxes (n, 4) meets: what is taken, its own line, other lines."""
+    low, high = places[:, None, :2], places[:, None, 2:]
+    left, lower, right, upper = places.T[:, :, None]
     boxes = np.asarray(taken)
     overlap = np.minimum(high + 12.0, boxes[:, 2:]) - np.maximum(low - 12.0, boxes[:, :2])
-    met = np.all(overlap > 0.0, axis=1)
-    trouble = float(np.sum(200.0 + overlap[met].prod(axis=1)))
+    met = np.all(overlap > 0.0, axis=-1)
+    trouble = np.sum(met * (200.0 + overlap.prod(axis=-1)), axis=1)
     for ink, near, cost in ((own, _BESIDE - 4.0, 500.0), (others, 4.0, 500.0), (others, 24.0, 2.0)):
-        trouble += cost * float(((ink > low - near) & (ink < high + near)).all(axis=1).sum())
+        x, y = ink.T
+        beside = (x > left - near) & (x < right + near)
+        trouble += cost * (beside & (y > lower - near) & (y < upper + near)).sum(axis=1)
     return trouble
 
 
@@ -86,15 +128,18 @@ def legend(
     """Return one row that explains those marks that occur, and `extra` ones."""
     shown = [*_arrow_marks(links), *_card_marks(cards), *extra]
     near, apart = 12.0, 30.0
-    widths = [wide + near + marks.extent(text)[0] for _, wide, text in shown]
-    if sum(widths) + apart * len(widths) > page[0] - marks.MARGIN:
+    widths = [wide + near * (wide > 0.0) + marks.extent(text)[0] for _, wide, text in shown]
+    spare = page[0] - 2.0 * marks.MARGIN - sum(widths)
+    if len(shown) > 1:
+        apart = min(apart, max(spare / (len(shown) - 1), _TIGHT))
+    if spare < apart * (len(widths) - 1):
         # What is not marked as compact is not.
         kept = [i for i, mark in enumerate(shown) if mark[2] != _OPEN]
         shown, widths = [shown[i] for i in kept], [widths[i] for i in kept]
     x = (page[0] - sum(widths) - apart * (len(shown) - 1)) / 2.0
     records: list[scene.Record] = []
     for (draw, wide, text), width in zip(shown, widths, strict=True):
-        records += [*draw(x, y), marks.label(text, x + wide + near, y - 10.0, "ln")]
+        records += [*draw(x, y), marks.label(text, x + wide + near * (wide > 0.0), y - 10.0, "ln")]
         x += width + apart
     return records
 
@@ -115,12 +160,12 @@ def _card_marks(cards: Sequence[marks.Card]) -> Iterable[Mark]:
         (any(c.compact for c in cards), (True, 1), "compact"),
         (any(not c.compact for c in cards), (False, 1), _OPEN),
         (any(c.sheets > 1 for c in cards), (False, 2), "two components"),
-        (any(not c.group for c in cards), (False, 1, False), "no group"),
+        (any(not c.group for c in cards), (False, 1, False), "not a group"),
     ):
         if occurs:
             more = marks.SHEET * (look[1] - 1)
 
             def draw(x: float, y: float, look: tuple = look, more: float = more) -> list[scene.Record]:
-                return marks.Card(("", 0), (x + wide / 2.0, y - more / 2.0), (wide, high), *look).records()
+                return marks.Card(("", 0), (x + wide / 2.0, y + more / 2.0), (wide, high), *look).records()
 
             yield draw, wide + more, text

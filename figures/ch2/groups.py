@@ -20,7 +20,7 @@ ALL = "SO,O,SE,E,GL,GL+,SL,CO+,R+,Sym+,Diag+,R,Sim+,Aff+,Aff"
                 "Left the plane, right space; below rotations, above with translations. In front unit "
                 "numbers, behind the motions v -> ... that they stand for: a number and its negative give "
                 "the same one. Every way along the arrows from S^1 to SE(3) leads to the same motion. All "
-                "eight are connected. A dual quaternion is z + w eps; here |z| = 1, and w is orthogonal to z."
+                "eight are connected. Here |z| = |q| = |p_0| = 1, and w is orthogonal to q."
             ),
         ),
         "B3.1": Plate(
@@ -39,8 +39,8 @@ ALL = "SO,O,SE,E,GL,GL+,SL,CO+,R+,Sym+,Diag+,R,Sim+,Aff+,Aff"
             caption=(
                 "Nine classes, the larger above the smaller. Twelve numbers, of rotation, translation and "
                 "stretch, are the parameters of an affine map; each class is a linear subspace of them, in "
-                "which some are free and the rest zero, or equal on the diagonal of Y. Grey: the shape. "
-                "Orange: under the part of one and the same random parameter that lies in the class."
+                "which some are free and the rest zero, or equal on the diagonal of Y. Pale outline: the "
+                "shape. Orange: under the part of one and the same random parameter that lies in the class."
             ),
             params={"diagram": "hierarchy"},
         ),
@@ -57,7 +57,7 @@ def groups(
     nodes: Annotated[
         str, Param("groups of a custom diagram, such as SO(2),SO,DQ; to name any is to ask for one")
     ] = ALL,
-    seed: Annotated[int, Param("of the shape's deformation in the hierarchy", low=0, high=9999)] = 381,
+    seed: Annotated[int, Param("of the shape's deformation in the hierarchy", low=0, high=9999)] = 9337,
 ) -> Drawing:
     """How the groups lie in each other: a cube, or layers, drawn from what is known of each.
 
