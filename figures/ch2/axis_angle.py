@@ -25,7 +25,7 @@ _TILT = 0.45
 # A part of x that is shorter than this, as a fraction of x, is not there.
 _ZERO = 1e-9
 # The last is about the length of the name of a dashed part.
-_SHAFT, _AXIS, _TURN, _SEEN, _LONG = 0.017, 1.16, 0.14, 0.1, 0.45
+_SHAFT, _AXIS, _TURN, _SEEN, _LONG = 0.017, 1.16, 0.14, 0.25, 0.45
 _X, _U, _ALONG = r"\mathbf{x}", r"\mathbf{u}", r"(\mathbf{u}\cdot\mathbf{x})\,\mathbf{u}"
 _ACROSS, _CROSS = r"\mathbf{x}_{\!\perp}", r"\mathbf{u}\times\mathbf{x}"
 
@@ -289,7 +289,8 @@ def _route_names(s: _Shown, foot: np.ndarray, camera: Camera, up: np.ndarray) ->
             anchor = ("r" if to_the_right else "l") + ("b" if above else "t")
             labels.append(scene.Label(text, foot, red, style.SMALL_TEXT, offset, anchor))
         else:
-            labels.append(beyond(text, foot, -up, camera, color=red, size=style.SMALL_TEXT, room=50.0))
+            middle = (s.center + foot) / 2.0
+            labels.append(beyond(text, middle, -up, camera, color=red, size=style.SMALL_TEXT, room=50.0))
     if abs(across) > _SEEN:
         text, middle = rf"$\sin\theta\;{_CROSS}$", (foot + s.image) / 2.0
         out = -s.v if along < _SEEN else s.v
