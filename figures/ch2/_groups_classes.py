@@ -7,8 +7,8 @@ import numpy as np
 
 from lietool.figure import Drawing
 from lietool.lie import affine, affine_classes, groups
-from lietool.render import letter
 from lietool.render import camera, plane, scene, style
+from lietool.render import letter as shape
 from lietool.render.globe import joined
 from lietool.render.marks import letter
 
@@ -184,7 +184,7 @@ def _icons(cards: list[marks.Card], A: np.ndarray) -> list[scene.View]:
     boxes = [(c.center[0] - c.size[0] / 2.0 + 13.0, c.center[1] - _ICON[1] / 2.0, *_ICON) for c in cards]
     if n == 2:
         return [_flat_icons(boxes, A)]
-    corners = letter.solid()[0]
+    corners = shape.solid()[0]
     seen = np.concatenate([corners, *(corners @ B[:3, :3].T + B[:3, 3] for B in A)])
     lens = camera.around(seen, (1.0, 0.42, 0.36), boxes[0], 1.03)
     # One view over the other, so that what comes after lies in front.
@@ -197,7 +197,7 @@ def _icons(cards: list[marks.Card], A: np.ndarray) -> list[scene.View]:
 
 def _outlined() -> tuple[scene.Record, ...]:
     """The solid before, as a pale outline that hides its own back."""
-    vertices, faces, _ = letter.solid()
+    vertices, faces, _ = shape.solid()
     half = len(vertices) // 2
     front, back = vertices[:half], vertices[half:]
     rims = [np.concatenate([rim, rim[:1]]) for rim in (front, back)]
@@ -209,7 +209,7 @@ def _outlined() -> tuple[scene.Record, ...]:
 
 
 def _flat_icons(boxes: list[tuple[float, float, float, float]], A: np.ndarray) -> scene.View:
-    outline = letter.outline()
+    outline = shape.outline()
     seen = np.concatenate([outline, *(plane.moved(B, outline) for B in A)])
     records: list[scene.Record] = []
     for box, B in zip(boxes, A, strict=True):
