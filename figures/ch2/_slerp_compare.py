@@ -14,12 +14,14 @@ from . import _slerp_ways
 COLORS = (style.GROUP, style.ROUTE_1, style.ROUTE_2)
 TEXTS = (style.GROUP_TEXT, style.ROUTE_1_TEXT, style.ROUTE_2_TEXT)
 DASHES = (None, (20.0, 6.0), (7.0, 5.0))
-DIRECTION = (1.0, 0.62, 0.5)
-# Rows and plot share one t axis, from LEFT to RIGHT; ASIDE is the middle of the column for the moment t.
-LEFT, RIGHT, ASIDE = 214.0, 838.0, 1040.0
-ROWS = (784.0, 642.0, 500.0)
+DIRECTION = (1.0, -0.44, 0.28)
+# Rows and plot share one t axis, from LEFT to RIGHT; ASIDE is the middle of what is beside them.
+LEFT, RIGHT, ASIDE = 224.0, 724.0, 968.0
+ROWS = (732.0, 578.0, 424.0)
 # The largest box of a solid on the page, and how far below its middle the numbers are.
-CELL, BELOW = 122.0, 71.0
+CELL, BELOW = 114.0, 80.0
+PLOT = (LEFT, 106.0, RIGHT - LEFT, 140.0)
+SPHERE = (ASIDE - 196.0, 392.0, 392.0, 392.0)
 # More solids than this would be too small to see.
 MOST_STEPS = 8
 # Speeds above this multiple of the others leave the plot, which would otherwise show only them.
@@ -71,29 +73,39 @@ def compared(ways: _slerp_ways.Ways, steps: int, t: float) -> Compared:
 
 
 def picture(c: Compared) -> scene.Picture:
-    """Return rows of solids, the speeds below them, and beside these the moment t and the paths of a tip."""
-    camera = Camera(DIRECTION, height=1.72)
-    cell = min(CELL, 1.12 * (RIGHT - LEFT) / max(len(c.times) - 1, 1))
-    views = []
+    """Return rows of solids above their speeds, with the moment t across; beside these the paths of a tip."""
+    camera = Camera(DIRECTION, height=1.46)
+    apart = (RIGHT - LEFT) / max(len(c.times) - 1, 1)
+    cell = min(CELL, 1.2 * apart)
+    now = LEFT + c.t * (RIGHT - LEFT)
+    hairline = scene.Lines([(now, ROWS[2] - 64.0, 0.0), (now, ROWS[0] + 58.0, 0.0)], style.MUTED, style.THIN)
+    views = [scene.View((hairline,))]
     for row, y in enumerate(ROWS):
-        x = LEFT + c.times * (RIGHT - LEFT)
-        views += [_solid(R, (x[k], y), cell, camera) for k, R in enumerate(c.rotations[row])]
-        views.append(_solid(c.now[row], (ASIDE, y), CELL, camera))
+        for x, R in zip(LEFT + c.times * (RIGHT - LEFT), c.rotations[row], strict=True):
+            # The solid of the moment t moves along the row; those of the steps make way for it.
+            way = float(np.clip((abs(x - now) / apart - 0.25) / 0.7, 0.0, 1.0))
+            views += _solid(R, (x, y), cell, camera, way)
+        views += _solid(c.now[row], (now, y), cell, camera)
     page = [*_row_texts(c), *_moment(c), *_speeds(c), *_note(c.ways)]
     views.append(scene.View(tuple(page)))
     return scene.Picture((*views, *_paths(c)))
 
 
-def _solid(R: np.ndarray, at: tuple[float, float], size: float, camera: Camera) -> scene.View:
+def _solid(
+    R: np.ndarray, at: tuple[float, float], size: float, camera: Camera, alpha: float = 1.0
+) -> list[scene.View]:
     """The solid with its axes; a gap where the rotation is undefined."""
     box = (at[0] - size / 2.0, at[1] - size / 2.0, size, size)
+    if alpha < 0.02:
+        return []
     if not np.isfinite(R).all():
         gap = scene.Label("gap", (*at, 0.0), style.MARK, style.SMALL_TEXT)
-        return scene.View((gap,))
+        return [scene.View((gap,))] if alpha > 0.5 else []
     arrows = (
-        scene.Arrow(np.zeros(3), 0.84 * R[:, k], color, 0.028, 2.8) for k, color in enumerate(style.AXES)
+        scene.Arrow(np.zeros(3), 0.74 * R[:, k], color, 0.019, 3.2, alpha)
+        for k, color in enumerate(style.AXES)
     )
-    return scene.View((*marks.letter(R), *arrows), camera, box)
+    return [scene.View((*marks.letter(R, alpha=alpha), *arrows), camera, box)]
 
 
 def _degrees(angle: float, digits: int | None = None) -> str:
@@ -105,36 +117,53 @@ def _degrees(angle: float, digits: int | None = None) -> str:
 
 
 def _row_texts(c: Compared) -> list[scene.Record]:
-    """Names with samples of their lines, the whole angle, and what is turned from each solid to the next."""
-    records: list[scene.Record] = []
-    middles = LEFT + (c.times[1:] + c.times[:-1]) / 2.0 * (RIGHT - LEFT)
+    """The times; names with samples of their lines, the whole angle, and what is turned from step to step."""
+    x = LEFT + c.times * (RIGHT - LEFT)
+    title = "three ways, at equal steps of $t$"
+    records: list[scene.Record] = [
+        scene.Label(title, ((LEFT + RIGHT) / 2.0, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn"),
+        scene.Label("$t =$", (LEFT - 26.0, 798.0, 0.0), style.INK, style.SMALL_TEXT, anchor="rn"),
+    ]
+    records += [
+        scene.Label(text, (LEFT + t * (RIGHT - LEFT), 798.0, 0.0), style.INK, style.SMALL_TEXT, anchor="cn")
+        for t, text in _times(c)
+    ]
     for row, y in enumerate(ROWS):
-        records += [
-            scene.Label(
-                _slerp_ways.NAMES[row], (40.0, y + 22.0, 0.0), TEXTS[row], style.TITLE_TEXT, anchor="ln"
-            ),
-            scene.Lines([(40.0, y, 0.0), (118.0, y, 0.0)], COLORS[row], style.CURVE, dash=DASHES[row]),
-            scene.Label(
-                _degrees(c.turned[row].sum()), (40.0, y - 42.0, 0.0), style.INK, style.SMALL_TEXT, anchor="ln"
-            ),
-        ]
-        records += [
-            scene.Label(_degrees(angle), (x, y - BELOW, 0.0), style.MUTED, style.SMALL_TEXT)
-            for x, angle in zip(middles, c.turned[row], strict=True)
-        ]
+        for text, up, color, size in (
+            (_slerp_ways.NAMES[row], 22.0, TEXTS[row], style.TITLE_TEXT),
+            (f"{_degrees(c.turned[row].sum())} in all", -42.0, style.INK, style.SMALL_TEXT),
+        ):
+            records.append(scene.Label(text, (28.0, y + up, 0.0), color, size, anchor="ln"))
+        records.append(
+            scene.Lines([(28.0, y, 0.0), (106.0, y, 0.0)], COLORS[row], style.CURVE, dash=DASHES[row])
+        )
+        for start, end, angle in zip(x[:-1] + 6.0, x[1:] - 6.0, c.turned[row], strict=True):
+            low, high = y - BELOW + 18.0, y - BELOW + 24.0
+            bracket = [(start, high, 0), (start, low, 0), (end, low, 0), (end, high, 0)]
+            where = ((start + end) / 2.0, y - BELOW + 9.0, 0.0)
+            records.append(scene.Lines(bracket, style.RULE, style.THIN))
+            records.append(scene.Label(_degrees(angle), where, style.INK, style.SMALL_TEXT, anchor="ct"))
     return records
 
 
+def _times(c: Compared) -> Ticks:
+    """The times of the solids, as many as there is room for."""
+    return [(float(t), f"${number(t)}$") for t in c.times[:: 2 if len(c.times) > MOST_STEPS else 1]]
+
+
 def _moment(c: Compared) -> list[scene.Record]:
-    """The column for the moment t, with how far each way is from slerp."""
+    """How far each way is from slerp at the moment t, with the ball that it has on the sphere."""
+    heading = rf"at $t = {number(c.t)}$"
     records: list[scene.Record] = [
-        scene.Lines([(900.0, ROWS[2] - BELOW - 14.0, 0.0), (900.0, 868.0, 0.0)], style.RULE, style.HAIR),
-        scene.Label(f"$t = {number(c.t)}$", (ASIDE, 862.0, 0.0), style.INK, style.TEXT),
+        scene.Label(heading, (ASIDE, PLOT[1] + PLOT[3] + 30.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
     ]
-    for row in (1, 2):
+    for row, y in ((1, 216.0), (2, 166.0)):
+        text = f"{_slerp_ways.NAMES[row]} undefined"
         if np.isfinite(c.aside[row]):
             text = f"{_degrees(c.aside[row])} from slerp"
-            records.append(scene.Label(text, (ASIDE, ROWS[row] - BELOW, 0.0), TEXTS[row], style.SMALL_TEXT))
+        at = (ASIDE - 96.0, y, 0.0)
+        records.append(scene.Points([(ASIDE - 122.0, y, 0.0)], COLORS[row], 9.0))
+        records.append(scene.Label(text, at, TEXTS[row], style.SMALL_TEXT, anchor="lc"))
     return records
 
 
@@ -144,14 +173,11 @@ def _speeds(c: Compared) -> list[scene.Record]:
     # The mean of a speed over t is the whole angle.
     top = max(min(tops.max(), _TALLEST * np.rad2deg(c.turned.sum(axis=1)).max()), 1.0)
     ticks = _ticks(top)
-    axes = Axes((LEFT, 112.0, RIGHT - LEFT, 206.0), (0.0, 1.0), (0.0, max(1.04 * top, ticks[-1][0])))
-    every = 2 if len(c.times) > MOST_STEPS else 1
-    records = axes.frame(
-        [(float(t), f"${number(t)}$") for t in c.times[::every]],
-        ticks,
-        "",
-        "angular speed, degrees per unit of $t$",
-    )
+    axes = Axes(PLOT, (0.0, 1.0), (0.0, max(1.04 * top, ticks[-1][0])))
+    records = axes.frame(_times(c), ticks)
+    title, above = "angular speed, degrees per unit of $t$", (PLOT[2] / 2.0, PLOT[3] + 30.0)
+    at = (PLOT[0] + above[0], PLOT[1] + above[1], 0.0)
+    records.append(scene.Label(title, at, style.INK, style.TITLE_TEXT, anchor="cn"))
     records.append(scene.Label("$t$", axes.at(1.0, 0.0), style.INK, style.SMALL_TEXT, (34.0, -14.0), "lt"))
     records.append(axes.vertical(c.t, style.MUTED, dash=None))
     for row in (0, 1, 2):
@@ -192,7 +218,7 @@ def _note(ways: _slerp_ways.Ways) -> list[scene.Record]:
     cosine = float(ways.start @ ways.end)
     value = rf"$q_0 \cdot q_1 = {number(cosine)}$"
     if ways.opposite:
-        text = r"$q_1 = -q_0$: any axis $u$ serves, here $i$; nlerp has a gap at $t = 1/2$."
+        text = r"$q_1 = -q_0$: any axis $\mathbf{u}$ serves, here $i$; nlerp has a gap at $t = 1/2$."
     elif ways.theta < 1e-9:
         text = "$q_1 = q_0$: nothing turns."
     elif cosine < 0.0:
@@ -200,31 +226,50 @@ def _note(ways: _slerp_ways.Ways) -> list[scene.Record]:
         text = f"{value}: the long way round, as given; to $-q_1$ it is {shorter}."
     else:
         text = f"{value}: the short way round."
-    return [scene.Label(text, (LEFT, 32.0, 0.0), style.INK, style.SMALL_TEXT, anchor="ln")]
+    return [scene.Label(text, (600.0, 34.0, 0.0), style.INK, style.SMALL_TEXT, anchor="cn")]
 
 
 def _paths(c: Compared) -> list[scene.View]:
     """Where the tip of one axis goes on a sphere: round the axis u, but not with Euler angles."""
     k = c.axis
-    camera = Camera(DIRECTION, height=2.46)
+    camera = Camera(DIRECTION, height=2.28)
     tips, here = c.rotations[..., k], c.now[..., k]
-    records: list[scene.Record] = list(globe(camera))
-    if c.ways.theta > 1e-9:
-        u = c.ways.line / c.ways.theta
-        records += [
-            scene.Lines([-1.12 * u, 1.0 * u], style.INK, style.EDGE),
-            scene.Arrow(0.98 * u, 1.22 * u, style.INK, 0.016, 3.4),
-            marks.beyond("$u$", 1.22 * u, u, camera, size=style.SMALL_TEXT, gap=18.0, room=60.0),
-        ]
+    records: list[scene.Record] = [*globe(camera), *_axis(c.ways, camera)]
     for row in (0, 2):
-        curve = 1.004 * c.paths[row, :, :, k]
-        records.append(scene.Lines(curve, COLORS[row], style.CURVE, dash=DASHES[row]))
-        records.append(scene.Points(1.004 * tips[row], COLORS[row], 5.5))
-    seen = np.isfinite(tips[1]).all(axis=-1)
-    records.append(scene.Points(1.01 * tips[1][seen], style.PAPER, 4.5, rim=COLORS[1], shaded=False))
+        records.append(scene.Lines(1.004 * c.paths[row, :, :, k], COLORS[row], style.CURVE, dash=DASHES[row]))
     for row in (0, 1, 2):
+        inner = 1.004 * tips[row, 1:-1]
+        inner = inner[np.isfinite(inner).all(axis=-1)]
+        if len(inner):
+            records.append(scene.Points(inner, COLORS[row], 6.0))
         if np.isfinite(here[row]).all():
-            records.append(scene.Points([1.01 * here[row]], COLORS[row], 10.0, rim=style.PAPER))
+            records.append(scene.Points([1.01 * here[row]], COLORS[row], 9.0, rim=style.PAPER))
+    records += _ends(tips[0, 0], tips[0, -1], camera)
     title = f"path of the ${'xyz'[k]}$ axis"
-    heading = scene.Label(title, (ASIDE, 344.0, 0.0), style.AXES_TEXT[k], style.TEXT, anchor="cb")
-    return [scene.View((heading,)), scene.View(tuple(records), camera, (890.0, 42.0, 300.0, 296.0))]
+    heading = scene.Label(title, (ASIDE, 846.0, 0.0), style.AXES_TEXT[k], style.TITLE_TEXT, anchor="cn")
+    return [scene.View((heading,)), scene.View(tuple(records), camera, SPHERE)]
+
+
+def _axis(ways: _slerp_ways.Ways, camera: Camera) -> list[scene.Record]:
+    """The unit vector u about which slerp turns, on its axis."""
+    if ways.theta <= 1e-9:
+        return []
+    u = ways.line / ways.theta
+    return [
+        scene.Lines([-1.06 * u, 1.06 * u], style.INK, style.THIN),
+        scene.Arrow(np.zeros(3), u, style.INK, 0.012, 3.4),
+        marks.beyond(r"$\mathbf{u}$", u, u, camera, gap=24.0, room=60.0),
+    ]
+
+
+def _ends(first: np.ndarray, last: np.ndarray, camera: Camera) -> list[scene.Record]:
+    """The tips at t = 0 and t = 1, which the three ways share."""
+    same = np.linalg.norm(first - last) < 0.1
+    named = ((first, "$0$"), (last, "$1$")) if not same else ((first, "$0, 1$"),)
+    return [
+        scene.Points(1.006 * np.stack([first, last]), style.INK, 7.5),
+        *(
+            marks.beyond(text, tip, tip, camera, size=style.SMALL_TEXT, gap=24.0, room=60.0)
+            for tip, text in named
+        ),
+    ]

@@ -81,6 +81,17 @@ class TestSlerp:
         assert (draw.render(drawing.picture, size=(64, 48), draft=True).image != 255).any()
         numbers.dumps(drawing.numbers)
 
+    def test_the_law_that_is_printed(self):
+        for q0, said in (
+            ((1.0, 0.0, 0.0, 0.0), "(1, q_1, t) = "),
+            ((1.0, 1.0, 0.0, 0.0), r"\mathbf{u})\,q_0$"),
+        ):
+            assert sum(said in text for text in texts(SLERP.draw(q0=q0))) >= 1, said
+
+    def test_the_angles_that_are_printed(self):
+        drawing = SLERP.draw(q0=(1.0, 0.0, 0.0, 0.0), q1=(0.5, 0.0, np.sqrt(0.75), 0.0), t=0.25)
+        assert r"$t = 0.25,\;\; \theta = 60.0^{\circ},\;\; t\theta = 15.0^{\circ}$" in texts(drawing)
+
     def test_no_quaternion(self):
         with pytest.raises(ValueError, match=r"^q0 must .*; got \(0.0, 0.0, 0.0, 0.0\)\. "):
             SLERP.draw(q0=(0.0, 0.0, 0.0, 0.0))
@@ -137,6 +148,11 @@ class TestCompare:
         between = shown["marked"][0].T @ shown["marked"][2]
         assert 1 + 2 * np.cos(shown["from_slerp"][2]) == pytest.approx(np.trace(between))
 
+    @pytest.mark.parametrize(("t", "solids"), [(0.4, 18), (0.5, 21), (0.0, 18), (1.0, 18)])
+    def test_the_solid_of_the_moment_takes_the_place_of_that_of_a_step(self, t, solids):
+        views = SLERP.draw(**{**SLERP.plate_params("B2.8b"), "t": t}).picture.views
+        assert sum(any(isinstance(r, scene.Arrow) for r in view.records) for view in views[:-1]) == solids
+
     @pytest.mark.parametrize("angle", [1e-6, 1.0, 3.0, 3.1415, 3.3, 5.0, 6.2])
     def test_the_way_is_as_given(self, angle):
         q1 = (np.cos(angle / 2), 0.0, np.sin(angle / 2), 0.0)
@@ -168,7 +184,8 @@ class TestCompare:
         undefined = np.isnan(shown["rotations"]).any(axis=(-1, -2))
         assert np.argwhere(undefined).tolist() == [[1, 3]]
         assert np.isnan(shown["from_slerp"]).tolist() == [False, True, False]
-        assert texts(drawing).count("gap") == 2
+        # In its row, and beside the sphere.
+        assert texts(drawing).count("gap") == 1 == texts(drawing).count("nlerp undefined")
         assert shown["turned"].sum(axis=1) == pytest.approx([2 * np.pi, 0.0, 0.0], abs=1e-12)
         # As a rotation it never moves, on either side of the gap.
         assert np.nanmax(np.abs(shown["rotations"][1] - shown["rotations"][1, 0])) < 1e-14
