@@ -194,40 +194,6 @@ class TestAnimation:
             loaded.draw(**{loaded.time.param: value})
 
 
-class TestExpSingularity:
-    def test_the_quaternion_is_of_the_rotation(self, plate):
-        shown = plate("B4.2").numbers
-        assert np.abs(quaternion.to_matrix(shown["quaternion"]) - shown["rotation"]).max() < 1e-14
-        angle = np.linalg.norm(shown["x"])
-        assert np.trace(shown["rotation"]) == pytest.approx(1 + 2 * np.cos(angle))
-        assert shown["quaternion"][0] == pytest.approx(np.cos(angle / 2))
-        assert shown["shell"] == np.ceil(angle / (2 * np.pi))
-
-    def test_full_turns_collapse_to_one_and_minus_one(self, plate):
-        collapsed = plate("B4.2").numbers["collapsed_to"]
-        assert np.abs(collapsed[:, 0] - [-1, 1, -1]).max() < 1e-14 and np.abs(collapsed[:, 1:]).max() < 1e-14
-
-    def test_through_the_identity_it_jumps_by_two_pi(self, plate):
-        shown = plate("B4.2b").numbers
-        steps = np.linalg.norm(np.diff(shown["lift_through"], axis=0), axis=-1)
-        assert np.count_nonzero(steps > 0.5) == 1
-        assert steps.max() == pytest.approx(2 * np.pi, abs=0.01) == shown["largest_step"][0]
-
-    def test_beside_the_identity_it_never_does(self, plate):
-        shown = plate("B4.2b").numbers
-        steps = np.linalg.norm(np.diff(shown["lift_beside"], axis=0), axis=-1)
-        assert steps.max() == pytest.approx(shown["largest_step"][1]) and steps.max() < 0.5
-        # It stays inside the sphere of a full turn, where no logarithm is singular.
-        assert np.linalg.norm(shown["lift_beside"], axis=-1).max() < 2 * np.pi - 0.05
-
-    def test_the_singular_value_vanishes_at_full_turns(self, plate):
-        shown = plate("B4.2b").numbers
-        half = shown["length"] / 2
-        # |sin(|x| / 2)| / (|x| / 2), the length of what a step across x becomes.
-        wanted = np.abs(np.sinc(half / np.pi))
-        assert np.abs(shown["smallest_singular_value"] - wanted).max() < 1e-12
-
-
 def exchanged(x: np.ndarray) -> tuple[np.ndarray, ...]:
     """Rodrigues' formula with sine and cosine of the half angle exchanged."""
     theta = np.sqrt(np.sum(np.square(x), axis=0))
