@@ -3,12 +3,10 @@
 import numpy as np
 
 from lietool.figure import Drawing
-from lietool.render import plane, scene, style
+from lietool.render import scene, style
 
+from . import _letters
 from . import _motions as m
-
-# The shapes, and about how wide their names are, in page units.
-_NAMES = ((r"\mathrm{start}", 70.0), ("1", 18.0), ("2", 18.0), ("3", 18.0))
 
 
 def drawing(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing:
@@ -29,11 +27,12 @@ def drawing(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing
         "turned": turned,
         "now": now,
     }
-    given = rf"$\theta = {m.degrees(theta)},\;\; b = {m.vector(b)},\;\; R_\theta b = {m.vector(turned)}$"
+    shown = m.vectors(b, turned)
+    given = rf"$\theta = {m.degrees(theta)},\;\; b = {shown[0]},\;\; b' = R_\theta\, b = {shown[1]}$"
     records = [
         *_records(theta, b, turned, shapes, now, t),
         m.title("turn, shift, turn back: a shift"),
-        *m.legend([(m.FIRST, r"$R_\theta\, T_b\, R_{-\theta}$"), (m.SECOND, r"$T_{R_\theta b}$")]),
+        *m.legend([(m.FIRST, r"$R_\theta\, T_b\, R_{-\theta}$"), (m.SECOND, "$T_{b'}$")]),
         m.note(given),
     ]
     return Drawing(m.picture(records), numbers)
@@ -50,26 +49,26 @@ def _records(
         m.straight(feet[1], b),
         m.about(m.ORIGIN, feet[2], theta),
     ]
-    angle = m.about(feet[0], feet[0] + b, theta, 0.62 * float(np.linalg.norm(b)))
-    page = m.fit([m.ORIGIN, feet[0] + b, angle, *legs, *(m.outline(T, size) for T in shapes)], size)
+    vectors = [m.straight(feet[0], b), m.straight(feet[0], turned)]
+    angle = m.about(feet[0], feet[0] + b, theta, 0.36 * float(np.linalg.norm(b)))
+    around = m.about(m.ORIGIN, feet[2], theta, 0.3 * float(np.linalg.norm(feet[0])))
+    letter = _letters.tracked(size, shapes, [*legs, *vectors, angle])
+    outlines = [letter.outline(T) for T in shapes]
+    page = m.fit([m.ORIGIN, feet[0] + b, angle, *legs, *outlines], size)
     again = m.same(turned, b, extent)
-    records: list[scene.Record] = [page.line(np.stack([m.ORIGIN, foot]), style.RULE) for foot in feet]
-    records.append(page.beyond("$O$", m.ORIGIN, -np.mean(feet, axis=0), size=style.SMALL_TEXT))
-    records += m.angle(page, angle, feet[0])
+    records: list[scene.Record] = [
+        *m.fan(page, m.ORIGIN, legs[2], style.ROUTE_1, 0.09),
+        *m.fan(page, m.ORIGIN, legs[0], style.ROUTE_1, 0.09),
+        *(m.spoke(page, m.ORIGIN, foot) for foot in feet),
+        m.center(page, "$O$", m.ORIGIN, -np.mean(feet, axis=0)),
+        *m.angle(page, around, m.ORIGIN),
+        *m.angle(page, angle, feet[0]),
+        *letter.stages(page, shapes[:3]),
+        *m.travellers(page, letter, now, shapes[3], t),
+    ]
     if not again:
-        records += _given(page, m.straight(feet[0], b), b)
-    records += [*m.stages(page, shapes[:3], size), *m.travellers(page, now, shapes[3], size, t)]
-    for curve, name in zip(legs, (r"R_{-\theta}", "T_b", r"R_\theta"), strict=True):
-        records += m.leg(page, curve, m.FIRST, name)
-    direct = m.straight(feet[0], turned)
-    records += m.leg(page, direct, m.SECOND, r"R_\theta b = b" if again else r"R_\theta b")
-    records.append(page.dots(np.stack([m.ORIGIN, *feet]), style.INK, 6.5))
-    # Over the head of each F; at the start away from the vectors.
-    towards = [-b - turned, *(T[:2, 1] for T in shapes[1:])]
-    return [*records, *m.tags(page, shapes, size, _NAMES, towards, r",\; ")]
-
-
-def _given(page: plane.Plane, vector: np.ndarray, b: np.ndarray) -> list[scene.Record]:
-    """The given b, drawn at the start to be compared with what becomes of it."""
-    drawn = plane.path(page.at(vector), style.MUTED, style.EDGE)
-    return [*drawn, m.named(page, vector, "$b$", style.MUTED, [b[1], -b[0]])]
+        records += m.given(page, vectors[0], "b", [b[1], -b[0]])
+    for k, (curve, name) in enumerate(zip(legs, (r"R_{-\theta}", "T_b", r"R_\theta"), strict=True)):
+        records += m.leg(page, curve, m.FIRST, rf"{k + 1}\!:\; {name}")
+    records += m.leg(page, vectors[1], m.SECOND, "b' = b" if again else r"b' = R_\theta\, b")
+    return [*records, page.dots(np.stack([m.ORIGIN, *feet]), style.INK, m.DOT)]

@@ -5,29 +5,39 @@ import numpy as np
 from lietool.figure import Drawing
 from lietool.render import plane, scene, style
 
+from . import _letters
 from . import _motions as m
 
 # A parallelogram flatter than this, in page units, has its two ways drawn side by side.
 _FLAT = 36.0
-# The four shapes, and about how wide their names are, in page units.
-_NAMES = (("X", 30.0), ("T_b X", 70.0), ("T_{b'} X", 76.0), ("T_{b+b'} X", 116.0))
+_NAMES = ("X", "T_b X", "T_{b'} X", "T_{b+b'} X")
 
 
 def translations(b: np.ndarray, b2: np.ndarray, place: np.ndarray, t: float) -> Drawing:
     """T_b' T_b and T_b T_b' with the parallelogram between them."""
     scale = max(float(np.abs(v).max()) for v in (b, b2, b + b2))
-    size = 0.27 * max(float(np.linalg.norm(b)), float(np.linalg.norm(b2))) or 1.0
+    size = 0.31 * max(float(np.linalg.norm(b)), float(np.linalg.norm(b2))) or 1.0
     start = m.shift(place)
     stops = [start, m.shift(b) @ start, m.shift(b2) @ start]
     ends = np.stack([m.shift(b2) @ m.shift(b) @ start, m.shift(b) @ m.shift(b2) @ start])
-    page = m.fit([m.outline(T, size) for T in (*stops, *ends)], size)
+    shapes = [*stops, ends[0]]
+    sides = [
+        m.straight(place + u, v)
+        for u, v in ((0.0 * b, b), (b, b2), (0.0 * b, b2), (b2, b), (0.0 * b, b + b2))
+    ]
+    letter = _letters.tracked(size, shapes, sides)
+    page = m.fit([letter.outline(T) for T in (*stops, *ends)], size)
     one, two = m.parts(t, 2)
     now = [m.shift(one * u + two * v) @ start for u, v in ((b, b2), (b2, b))]
-    records = [*m.stages(page, stops, size), *m.travellers(page, now, ends[0], size, t)]
-    records += _sides(page, b, b2, place)
-    shapes = [*stops, ends[0]]
-    towards = [T[:2, 2] - place - (b + b2) / 2.0 for T in shapes]
-    records += m.tags(page, shapes, size, _NAMES, towards, " = ")
+    corners = place + np.array([0.0 * b, b, b + b2, b2])
+    records: list[scene.Record] = [
+        m.area(page, corners[:3], style.ROUTE_1, 0.13),
+        m.area(page, corners[[0, 2, 3]], style.ROUTE_2, 0.13),
+        *letter.stages(page, stops),
+        *m.travellers(page, letter, now, ends[0], t),
+    ]
+    records += _sides(page, b, b2, place, letter)
+    records += m.tags(page, letter, shapes, _NAMES, " = ")
     records += [
         _ends(ends, scale),
         *m.legend([(m.FIRST, "first $b$, then $b'$"), (m.SECOND, "first $b'$, then $b$")]),
@@ -36,7 +46,7 @@ def translations(b: np.ndarray, b2: np.ndarray, place: np.ndarray, t: float) -> 
     numbers = {
         "b": b,
         "b'": b2,
-        "parallelogram": place + np.array([0.0 * b, b, b + b2, b2]),
+        "parallelogram": corners,
         "ends": ends,
         "distance_of_ends": float(np.linalg.norm(ends[0] - ends[1])),
         "now": np.stack(now),
@@ -44,17 +54,19 @@ def translations(b: np.ndarray, b2: np.ndarray, place: np.ndarray, t: float) -> 
     return Drawing(m.picture(records), numbers)
 
 
-def _sides(page: plane.Plane, b: np.ndarray, b2: np.ndarray, place: np.ndarray) -> list[scene.Record]:
+def _sides(
+    page: plane.Plane, b: np.ndarray, b2: np.ndarray, place: np.ndarray, letter: _letters.Letter
+) -> list[scene.Record]:
     """The four sides as arrows; where two of them would lie on each other, they are moved apart."""
-    sides = ((0.0 * b, b, m.FIRST, "b"), (b, b2, m.FIRST, "b'"), (0.0 * b, b2, m.SECOND, "b'"))
-    sides = (*sides, (b2, b, m.SECOND, "b"))
+    sides = ((0.0 * b, b, m.FIRST, "1", "b"), (b, b2, m.FIRST, "2", "b'"))
+    sides = (*sides, (0.0 * b, b2, m.SECOND, "1", "b'"), (b2, b, m.SECOND, "2", "b"))
     cross = float(b[0] * b2[1] - b[1] * b2[0])
     longest = max((b, b2), key=lambda v: float(v @ v))
     length = float(np.linalg.norm(longest))
     normal = np.array([-longest[1], longest[0]]) / length if length else np.array([0.0, 1.0])
     flat = abs(cross) * page.scale <= _FLAT * length
     records: list[scene.Record] = []
-    for k, (start, along, way, name) in enumerate(sides):
+    for k, (start, along, way, step, name) in enumerate(sides):
         side = m.straight(place + start, along)
         away = side.mean(axis=0) - place - (b + b2) / 2.0
         if flat:
@@ -62,22 +74,25 @@ def _sides(page: plane.Plane, b: np.ndarray, b2: np.ndarray, place: np.ndarray) 
             lane = (1.0, -1.0, -1.0, 1.0)[k] if b @ b2 < 0.0 else (-1.0, -1.0, 1.0, 1.0)[k]
             side = side + lane * 9.0 / page.scale * normal
             away = lane * normal
-        records += m.leg(page, side, way, name, away)
+        records += m.leg(page, side, way, rf"{step}\!:\; {name}", away)
         if not along.any():
             records.append(m.named(page, side, f"${name} = 0$", way.text, away))
     if not flat:
-        both = m.straight(place, b + b2)
-        records[:0] = plane.path(page.at(both), style.MUTED, style.EDGE)
-        records.append(m.named(page, both, "$b + b'$", style.MUTED))
+        # Its name on the side away from the letter that is nearest to its middle.
+        middle = place + (b + b2) / 2.0
+        heavy = [letter.outline(m.shift(place + v)).mean(axis=0) - middle for v in (b, b2)]
+        across = np.array([-(b + b2)[1], (b + b2)[0]])
+        side = -np.sign(min(heavy, key=lambda v: float(v @ v)) @ across) or 1.0
+        records += m.given(page, m.straight(place, b + b2), "b + b'", side * across)
     corners = place + np.array([0.0 * b, b, b2, b + b2])
-    return [*records, page.dots(corners, style.INK, 6.5)]
+    return [*records, page.dots(corners, style.INK, m.DOT)]
 
 
 def rotations(first: float, second: float, place: np.ndarray, t: float) -> Drawing:
     """R_theta' R_theta and R_theta R_theta' of a shape about the origin."""
     angles, reverse = (first, second), (second, first)
     radius = float(np.linalg.norm(place))
-    size = 0.42 * radius or 1.0
+    size = 0.48 * radius or 1.0
     start = m.shift(place)
     stops = [start, m.turn(first) @ start, m.turn(second) @ start]
     ends = np.stack([m.turn(b) @ m.turn(a) @ start for a, b in (angles, reverse)])
@@ -85,13 +100,18 @@ def rotations(first: float, second: float, place: np.ndarray, t: float) -> Drawi
     now = [m.turn(one * a + two * b) @ start for a, b in (angles, reverse)]
     lanes = [_lanes(place, pair, lane) for pair, lane in ((angles, 0.80), (reverse, 0.48))]
     circle = plane.arc(m.ORIGIN, radius, 0.0, 2.0 * np.pi)
-    page = m.fit([circle, *(m.outline(T, size) for T in (*stops, *ends)), *lanes[0], *lanes[1]], size)
+    # Inside the circle are the arcs.
+    letter = _letters.tracked(size, [*stops, ends[0]], [circle, *lanes[0], *lanes[1]])
+    page = m.fit([circle, *(letter.outline(T) for T in (*stops, *ends)), *lanes[0], *lanes[1]], size)
     feet = [T[:2, 2] for T in (*stops, ends[0])]
-    records: list[scene.Record] = [page.circle(m.ORIGIN, radius, style.RULE)]
-    records += [page.line(np.stack([m.ORIGIN, foot]), style.RULE) for foot in feet]
-    records += [*m.stages(page, stops, size), *m.travellers(page, now, ends[0], size, t)]
+    records: list[scene.Record] = [page.circle(m.ORIGIN, radius, style.BEFORE_EDGE, alpha=0.8)]
+    for arcs, way in zip(lanes, (m.FIRST, m.SECOND), strict=True):
+        for arc in arcs:
+            records += m.fan(page, m.ORIGIN, arc, way.color, 0.10)
+    records += [m.spoke(page, m.ORIGIN, foot) for foot in feet]
+    records += [*letter.stages(page, stops), *m.travellers(page, letter, now, ends[0], t)]
     records += _arcs(page, lanes)
-    records.append(page.dots(np.stack([m.ORIGIN, *feet]), style.INK, 6.5))
+    records.append(page.dots(np.stack([m.ORIGIN, *feet]), style.INK, m.DOT))
     given = rf"$\theta = {m.degrees(first)},\;\; \theta' = {m.degrees(second)}$"
     records += [
         _ends(ends, radius),
@@ -132,6 +152,6 @@ def _arcs(page: plane.Plane, lanes: list[list[np.ndarray]]) -> list[scene.Record
     for way, arcs, names, side in zip(
         (m.FIRST, m.SECOND), lanes, (("", "'"), ("'", "")), (1.0, -1.0), strict=True
     ):
-        for arc, name in zip(arcs, names, strict=True):
-            records += m.leg(page, arc, way, rf"\theta{name}", side * arc[len(arc) // 2])
+        for step, (arc, name) in enumerate(zip(arcs, names, strict=True), 1):
+            records += m.leg(page, arc, way, rf"{step}\!:\; \theta{name}", side * arc[len(arc) // 2])
     return records

@@ -20,7 +20,7 @@ Axis = Literal["x", "y", "z"]
             caption=(
                 "A shape is carried by T_b and then by T_b' (solid), and by T_b' and then by T_b (dashed). "
                 "The two ways are two sides each of one parallelogram, so both end at the same place, "
-                "which T_b+b' reaches at once: translations form a commutative group."
+                "which T_b+b' (grey) reaches at once: translations form a commutative group."
             ),
         ),
         "B2.6": Plate(
@@ -28,8 +28,9 @@ Axis = Literal["x", "y", "z"]
             equations=("2.20", "2.21"),
             caption=(
                 "Above: a solid turned by 30 degrees about the x axis and then by 45 degrees about the z "
-                "axis. Below: the same two turns in the other order. On the right both ends in one place: "
-                "they differ by a turn, whose angle is the length of log(R_1^T R_2)."
+                "axis; the axes stay fixed. Below: the same two turns in the other order. Right, larger and "
+                "seen from another side, both ends in one place: a turn about the red axis takes R_1 "
+                "to R_2 (translucent), and on the arc a corner of the solid. Its angle is that of R_1^T R_2."
             ),
             params={"group": "rotation3"},
         ),
@@ -37,11 +38,11 @@ Axis = Literal["x", "y", "z"]
             title="Translations are a normal subgroup",
             equations=("2.8", "3.5"),
             caption=(
-                "Turn by -theta about the origin, shift by b, turn back by theta: after the three steps the "
-                "shape stands upright again, and all that has happened is a shift (dashed). Its vector is "
-                "R_theta b, the given b turned by theta."
+                "Turn by -theta about the origin O, shift by b, turn back by theta: after the three steps "
+                "the shape stands upright again, and all that has happened is a shift (dashed). Its vector "
+                "is b' = R_theta b, the given b (grey) turned by theta."
             ),
-            params={"group": "normal", "b": (3.1, -0.2), "angle": 40.0},
+            params={"group": "normal", "b": (3.6, -0.2), "angle": 140.0, "place": (-2.2, -0.8)},
         ),
     },
     time=Time("t", 0.0, 1.0),
@@ -51,14 +52,17 @@ def commute(
         Literal["translation2", "rotation2", "rotation3", "normal"],
         Param("two translations, two rotations of the plane or of space, or a turned translation"),
     ] = "translation2",
-    b: Annotated[Vector, Param("the shift b (x, y)", low=-100.0, high=100.0)] = (3.4, 0.5),
-    b2: Annotated[Vector, Param("the shift b' (x, y) of translation2", low=-100.0, high=100.0)] = (1.1, 2.2),
+    b: Annotated[Vector, Param("the shift b (x, y)", low=-100.0, high=100.0)] = (4.0, 0.3),
+    b2: Annotated[Vector, Param("the shift b' (x, y) of translation2", low=-100.0, high=100.0)] = (1.0, 2.4),
     angle: Annotated[float, Param("the angle of the first turn, or theta", "deg", -1080.0, 1080.0)] = 30.0,
     angle2: Annotated[float, Param("the angle of the second turn", "deg", -1080.0, 1080.0)] = 45.0,
     axis: Annotated[Axis, Param("what the first turn of rotation3 is about")] = "x",
     axis2: Annotated[Axis, Param("what the second turn of rotation3 is about")] = "z",
     place: Annotated[
-        Vector, Param("where the foot of the shape stands (x, y); not for rotation3", low=-100.0, high=100.0)
+        Vector,
+        Param(
+            "where the marked corner of the shape stands (x, y); not for rotation3", low=-100.0, high=100.0
+        ),
     ] = (0.9, 2.7),
     t: Annotated[float, Param("how much of the ways is done", low=0.0, high=1.0)] = 1.0,
 ) -> Drawing:

@@ -17,30 +17,32 @@ Vector = tuple[float, float]
             title="A rotation of the plane",
             equations=("2.1", "2.2"),
             caption=(
-                "A shape before (grey) and after R_theta, the rotation by theta about the origin. The "
-                "marked point x goes to x' = R_theta x and stays on its circle; every other point of the "
-                "shape turns by the same angle."
+                "A shape before (grey) and after R_theta, the rotation by theta about the origin, and in "
+                "between after a third and two thirds of the turn (pale). The marked point x goes to "
+                "x' = R_theta x and stays on its circle; every other point of the shape, such as the one "
+                "furthest from the origin (grey dot), stays on its own and turns by the same angle."
             ),
         ),
         "B2.3": Plate(
             title="First a rotation, then a translation",
             equations=("2.5", "2.7"),
             caption=(
-                "R_theta turns the shape about the origin, then T_b shifts it (solid). In the other order "
-                "(dashed) the shape comes to stand turned alike, but elsewhere: from the turned shape "
-                "the shift is b' = R_theta b instead of b, for R_theta T_b = T_b' R_theta."
+                "R_theta turns the shape about the origin O, then T_b shifts it (solid arrows, orange end). "
+                "In the other order (dashed arrows, purple shapes) it comes to stand turned alike, but "
+                "elsewhere: from the turned shape the shift is b' = R_theta b instead of b, for "
+                "R_theta T_b = T_b' R_theta. The angle between b and b' is theta."
             ),
-            params={"kind": "rigid", "angle": 60.0, "b": (2.4, -0.7)},
+            params={"kind": "rigid", "angle": 100.0, "b": (2.8, 1.3), "place": (2.8, 0.2)},
         ),
         "B2.3b": Plate(
             title="A rotation about another point",
             equations=("2.9",),
             caption=(
                 "T_b R_theta T_-b in three steps (solid): a shift that brings the centre b to the origin, a "
-                "turn about the origin, and the shift back. The same shape is reached at once "
-                "by a turn about b (dashed)."
+                "turn by theta about the origin O, and the shift back. The same shape is reached at once "
+                "by a turn by the same angle about b (dashed)."
             ),
-            params={"kind": "about", "angle": 70.0, "b": (2.6, 1.1), "place": (3.9, 1.5)},
+            params={"kind": "about", "angle": 60.0, "b": (3.0, 0.1), "place": (5.1, 1.2)},
         ),
     },
     time=Time("t", 0.0, 1.0),
@@ -50,13 +52,15 @@ def transform2(
         Literal["rotation", "rigid", "about"],
         Param("a turn about the origin, one with a shift, or a turn about another point"),
     ] = "rotation",
-    angle: Annotated[float, Param("the angle theta of the turn", "deg", -1080.0, 1080.0)] = 120.0,
+    angle: Annotated[float, Param("the angle theta of the turn", "deg", -1080.0, 1080.0)] = 150.0,
     b: Annotated[
         Vector, Param("the shift b (x, y); with about, the centre of the turn", low=-100.0, high=100.0)
     ] = (2.2, -0.6),
-    place: Annotated[Vector, Param("where the foot of the shape stands (x, y)", low=-100.0, high=100.0)] = (
-        2.3,
-        0.2,
+    place: Annotated[
+        Vector, Param("where the marked corner of the shape stands (x, y)", low=-100.0, high=100.0)
+    ] = (
+        2.1,
+        -1.1,
     ),
     t: Annotated[float, Param("how much of the motion is done", low=0.0, high=1.0)] = 1.0,
 ) -> Drawing:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lietool import figure, paths
-from lietool.render import draw
+from lietool.render import draw, scene
 
 
 def shown(name: str, **params: object) -> dict[str, Any]:
@@ -96,7 +96,7 @@ class TestNormal:
     def test_the_three_steps_are_a_translation(self, plate):
         numbers = plate("B3.2").numbers
         wanted = np.eye(3)
-        wanted[:2, 2] = plane_turn(40.0) @ numbers["b"]
+        wanted[:2, 2] = plane_turn(140.0) @ numbers["b"]
         assert np.abs(numbers["product"] - wanted).max() < 1e-15
         assert numbers["turned"] == pytest.approx(wanted[:2, 2])
         assert numbers["stages"][3] == pytest.approx(wanted @ numbers["stages"][0])
@@ -110,13 +110,20 @@ class TestRotation:
     def test_the_marked_point_stays_on_its_circle(self, plate):
         numbers = plate("B2.2").numbers
         assert np.linalg.norm(numbers["x'"]) == pytest.approx(numbers["radius"])
-        assert numbers["after"] == pytest.approx(numbers["before"] @ plane_turn(120.0).T)
+        assert numbers["after"] == pytest.approx(numbers["before"] @ plane_turn(150.0).T)
+
+    def test_so_does_the_point_that_is_furthest_away(self, plate):
+        numbers = plate("B2.2").numbers
+        first, last = numbers["other"]
+        assert last == pytest.approx(plane_turn(150.0) @ first)
+        furthest = np.linalg.norm(numbers["before"], axis=-1).max()
+        assert np.linalg.norm(first) == pytest.approx(furthest)
 
 
 class TestRigid:
     def test_both_orders(self, plate):
         numbers = plate("B2.3").numbers
-        R, b, x = plane_turn(60.0), numbers["b"], numbers["stages"][0][:2, 2]
+        R, b, x = plane_turn(100.0), numbers["b"], numbers["stages"][0][:2, 2]
         assert numbers["stages"][2][:2, 2] == pytest.approx(R @ x + b)
         assert numbers["other_order"][2][:2, 2] == pytest.approx(R @ (x + b))
         # (2.7): from the turned shape it is a shift by b'.
@@ -136,7 +143,7 @@ class TestAboutAPoint:
         b, product = numbers["b"], numbers["product"]
         assert product[:2, :2] @ b + product[:2, 2] == pytest.approx(b)
         start, end = numbers["stages"][0][:2, 2] - b, numbers["stages"][3][:2, 2] - b
-        assert end == pytest.approx(plane_turn(70.0) @ start)
+        assert end == pytest.approx(plane_turn(60.0) @ start)
         assert np.abs(numbers["now"][0] - numbers["now"][1]).max() < 1e-14
 
 
@@ -173,3 +180,52 @@ def test_an_arc_of_several_turns_ends_where_the_point_does(turns):
     curve = _motions.about((1.0, 2.0), (3.0, 2.5), theta)
     end = plane_turn(360.0 * turns) @ (2.0, 0.5) + (1.0, 2.0)
     assert curve[0] == pytest.approx([3.0, 2.5]) and curve[-1] == pytest.approx(end)
+
+
+class TestTrackedCorner:
+    """No arrow of our plates runs over a letter: the corner that is tracked is chosen so."""
+
+    def letters(self):
+        from lietool.figures.ch2 import _letters, _motions
+
+        return _letters, _motions
+
+    def test_arrows_to_the_upper_right_leave_from_the_upper_left(self):
+        letters, m = self.letters()
+        sides = [m.straight(u, v) for u, v in (((0, 0), (4, 0.3)), ((0, 0), (1, 2.4)), ((4, 0.3), (1, 2.4)))]
+        found = letters.tracked(1.2, [m.shift(at) for at in ((0, 0), (4, 0.3), (1, 2.4), (5, 2.7))], sides)
+        assert found.corner == (-0.375, 0.5)
+
+    def test_the_tracked_corner_goes_where_the_motion_takes_the_origin(self):
+        letters, m = self.letters()
+        T = m.shift((2.0, -1.0)) @ m.turn(0.7)
+        for corner in ((-0.375, 0.5), (-0.375, -0.5), (0.375, 0.5)):
+            outline = letters.Letter(0.8, corner).outline(T)
+            assert np.linalg.norm(outline - (2.0, -1.0), axis=-1).min() == pytest.approx(0.0, abs=1e-12)
+
+    def test_what_lies_on_a_letter(self):
+        letters, m = self.letters()
+        letter = letters.Letter(4.0, (-0.375, -0.5))
+        points = np.array([[0.5, 3.5], [2.5, 0.5], [1.5, 1.5], [2.5, 2.5]])
+        assert letter.on(m.shift((0.0, 0.0)), points).tolist() == [True, False, True, False]
+
+
+class TestWhatIsSeenOfTheTurnBetweenBothEnds:
+    def test_the_arc_leads_from_a_corner_to_the_same_corner_about_the_right_axis(self, plate):
+        from lietool.figures.ch2 import _commute_space
+
+        from lietool.render import letter
+
+        one, two = plate("B2.6").numbers["stages"][:, 1]
+        axis, delta = _commute_space._between(one, two)
+        camera = _commute_space._eye(one, two)
+        records = _commute_space._corner_turned(one, axis, delta, camera)
+        (ends,) = (r for r in records if isinstance(r, scene.Points))
+        solid = letter.solid()[0]
+        k = int(np.argmin(np.linalg.norm(solid @ one.T - ends.positions[0], axis=-1)))
+        assert ends.positions[0] == pytest.approx(one @ solid[k])
+        assert ends.positions[1] == pytest.approx(two @ solid[k])
+        # Right-handed: from the first to the second about the axis.
+        assert np.cross(ends.positions[0], ends.positions[1]) @ axis > 0.0
+        # Not along the page: the angle is seen.
+        assert abs(camera.axes[2] @ axis) > np.cos(np.deg2rad(50.0))
