@@ -183,7 +183,7 @@ def test_an_arc_of_several_turns_ends_where_the_point_does(turns):
 
 
 class TestTrackedCorner:
-    """No arrow of our plates runs over a letter: the corner that is tracked is chosen so."""
+    """The corner is tracked at which arrows run over letters least."""
 
     def letters(self):
         from lietool.figures.ch2 import _letters, _motions
