@@ -12,7 +12,7 @@ from lietool.lie import so3
 def found():
     """The errors before they are rounded, of the plate and of other matrices."""
     return {
-        seed: (errors._symmetric(rng, 500), errors._affine(rng, 500))
+        seed: (errors._symmetric(rng, 1000), errors._affine(rng, 1000))
         for seed in (1, 2)
         for rng in [np.random.default_rng(seed)]
     }
@@ -23,8 +23,8 @@ class TestRobust:
         for rows in found[1]:
             for name, row in rows.items():
                 decades = np.log10(row)
-                # Between processors the mean of 500 moves by 0.03 at most, that of few by 0.1.
-                margin = 0.15 if name == "Higham" else 0.05
+                # Between processors the mean of 1000 moves by 0.06 at most (most by 0.02), that of few by 0.15.
+                margin = 0.2 if name == "Higham" else 0.06
                 assert np.abs(np.abs(decades - np.floor(decades)) - 0.5).min() > margin, name
 
     def test_other_matrices_give_the_same_picture(self, found):
