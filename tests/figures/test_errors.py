@@ -23,7 +23,7 @@ class TestRobust:
         for rows in found[1]:
             for name, row in rows.items():
                 decades = np.log10(row)
-                # Between processors the mean of 1000 moves by 0.06 at most (most by 0.02), that of few by 0.15.
+                # Between processors the mean of 1000 moves by 0.06 at most (most by 0.02), of few by 0.15.
                 margin = 0.2 if name == "Higham" else 0.06
                 assert np.abs(np.abs(decades - np.floor(decades)) - 0.5).min() > margin, name
 
