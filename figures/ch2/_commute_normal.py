@@ -16,21 +16,24 @@ def drawing(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing
     for step in steps:
         shapes.append(step @ shapes[-1])
     turned = m.turn(theta)[:2, :2] @ b
-    one, two, three = m.parts(t, 3)
-    long = m.turn(three * theta) @ m.shift(two * b) @ m.turn(-one * theta) @ shapes[0]
-    now = np.stack([long, m.shift(t * turned) @ shapes[0]])
+
+    def at(t: float) -> list[np.ndarray]:
+        one, two, three = m.parts(t, 3)
+        long = m.turn(three * theta) @ m.shift(two * b) @ m.turn(-one * theta) @ shapes[0]
+        return [long, m.shift(t * turned) @ shapes[0]]
+
     numbers = {
         "theta": theta,
         "b": b,
         "stages": np.stack(shapes),
         "product": steps[2] @ steps[1] @ steps[0],
         "turned": turned,
-        "now": now,
+        "now": np.stack(at(t)),
     }
     shown = m.vectors(b, turned)
     given = rf"$\theta = {m.degrees(theta)},\;\; b = {shown[0]},\;\; b' = R_\theta\, b = {shown[1]}$"
     records = [
-        *_records(theta, b, turned, shapes, now, t),
+        *_records(theta, b, turned, shapes, at, t),
         m.title("turn, shift, turn back: a shift"),
         *m.legend([(m.FIRST, r"$R_\theta\, T_b\, R_{-\theta}$"), (m.SECOND, "$T_{b'}$")]),
         m.note(given),
@@ -39,7 +42,7 @@ def drawing(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing
 
 
 def _records(
-    theta: float, b: np.ndarray, turned: np.ndarray, shapes: list[np.ndarray], now: np.ndarray, t: float
+    theta: float, b: np.ndarray, turned: np.ndarray, shapes: list[np.ndarray], at: m.Moving, t: float
 ) -> list[scene.Record]:
     feet = [T[:2, 2] for T in shapes]
     extent = m.extent([m.ORIGIN, *feet, feet[0] + b])
@@ -54,7 +57,7 @@ def _records(
     around = m.about(m.ORIGIN, feet[2], theta, 0.3 * float(np.linalg.norm(feet[0])))
     letter = _letters.tracked(size, shapes, [*legs, *vectors, angle])
     outlines = [letter.outline(T) for T in shapes]
-    page = m.fit([m.ORIGIN, feet[0] + b, angle, *legs, *outlines], size)
+    page = m.fit([m.ORIGIN, feet[0] + b, angle, *legs, *outlines, *m.swept(letter, at)], size)
     again = m.same(turned, b, extent)
     records: list[scene.Record] = [
         *m.fan(page, m.ORIGIN, legs[2], style.ROUTE_1, 0.09),
@@ -63,8 +66,9 @@ def _records(
         m.center(page, "$O$", m.ORIGIN, -np.mean(feet, axis=0)),
         *m.angle(page, around, m.ORIGIN),
         *m.angle(page, angle, feet[0]),
+        *letter.draw(page, m.turn(0.5 * theta) @ shapes[2], _letters.FAINT),
         *letter.stages(page, shapes[:3]),
-        *m.travellers(page, letter, now, shapes[3], t),
+        *m.travellers(page, letter, at(t), shapes[3], t),
     ]
     if not again:
         records += m.given(page, vectors[0], "b", [b[1], -b[0]])

@@ -96,20 +96,23 @@ def rotations(first: float, second: float, place: np.ndarray, t: float) -> Drawi
     start = m.shift(place)
     stops = [start, m.turn(first) @ start, m.turn(second) @ start]
     ends = np.stack([m.turn(b) @ m.turn(a) @ start for a, b in (angles, reverse)])
-    one, two = m.parts(t, 2)
-    now = [m.turn(one * a + two * b) @ start for a, b in (angles, reverse)]
+
+    def at(t: float) -> list[np.ndarray]:
+        one, two = m.parts(t, 2)
+        return [m.turn(one * a + two * b) @ start for a, b in (angles, reverse)]
+
     lanes = [_lanes(place, pair, lane) for pair, lane in ((angles, 0.80), (reverse, 0.48))]
     circle = plane.arc(m.ORIGIN, radius, 0.0, 2.0 * np.pi)
     # Inside the circle are the arcs.
     letter = _letters.tracked(size, [*stops, ends[0]], [circle, *lanes[0], *lanes[1]])
-    page = m.fit([circle, *(letter.outline(T) for T in (*stops, *ends)), *lanes[0], *lanes[1]], size)
+    page = m.fit([circle, *m.swept(letter, at), *lanes[0], *lanes[1]], size)
     feet = [T[:2, 2] for T in (*stops, ends[0])]
     records: list[scene.Record] = [page.circle(m.ORIGIN, radius, style.BEFORE_EDGE, alpha=0.8)]
     for arcs, way in zip(lanes, (m.FIRST, m.SECOND), strict=True):
         for arc in arcs:
             records += m.fan(page, m.ORIGIN, arc, way.color, 0.10)
     records += [m.spoke(page, m.ORIGIN, foot) for foot in feet]
-    records += [*letter.stages(page, stops), *m.travellers(page, letter, now, ends[0], t)]
+    records += [*letter.stages(page, stops), *m.travellers(page, letter, at(t), ends[0], t)]
     records += _arcs(page, lanes)
     records.append(page.dots(np.stack([m.ORIGIN, *feet]), style.INK, m.DOT))
     given = rf"$\theta = {m.degrees(first)},\;\; \theta' = {m.degrees(second)}$"
@@ -125,7 +128,7 @@ def rotations(first: float, second: float, place: np.ndarray, t: float) -> Drawi
         "stops": np.stack(stops),
         "ends": ends,
         "distance_of_ends": float(np.linalg.norm(ends[0] - ends[1])),
-        "now": np.stack(now),
+        "now": np.stack(at(t)),
     }
     return Drawing(m.picture(records), numbers)
 

@@ -30,8 +30,10 @@ class Look:
 START = Look(style.BEFORE, style.BEFORE_EDGE)
 STAGE = Look(style.BETWEEN, style.BETWEEN_EDGE)
 GHOST = Look(style.BETWEEN, style.BETWEEN_EDGE, 0.8)
+FAINT = Look(style.BETWEEN, style.BETWEEN_EDGE, 0.35)
 END = Look(style.AFTER, style.AFTER_EDGE)
 # On the other way, and its end.
+OTHER_GHOST = Look(style.ROUTE_2, style.ROUTE_2, 0.05)
 OTHER_STAGE = Look(style.ROUTE_2, style.ROUTE_2, 0.16)
 OTHER_END = Look(style.ROUTE_2, style.ROUTE_2_TEXT, 0.55)
 # Where a shape will be, or would be.

@@ -1,7 +1,7 @@
 """What the pictures of motions in the plane share: the legs of a way, angles, names, a legend."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,8 @@ from lietool.render.plot import number
 
 from . import _letters
 
+# The motions of a shape on each of its ways, at a time from 0 to 1.
+Moving = Callable[[float], Sequence[np.ndarray]]
 ORIGIN = np.zeros(2)
 # Where pictures lie on the page: under the title and above the legend.
 BOX = (90.0, 180.0, 1020.0, 620.0)
@@ -92,7 +94,7 @@ def about(center: ArrayLike, point: ArrayLike, theta: float, radius: float | Non
 def travellers(
     page: plane.Plane,
     letter: _letters.Letter,
-    now: Sequence[np.ndarray] | np.ndarray,
+    now: Sequence[np.ndarray],
     end: np.ndarray,
     t: float,
 ) -> list[scene.Record]:
@@ -282,6 +284,11 @@ def fit(
     """Return the plane that shows all of several sets of points, and no shape of a size too large."""
     every = np.concatenate([np.asarray(p, float).reshape(-1, 2) for p in points])
     return plane.fit(every, box, _HIGHEST / size)
+
+
+def swept(letter: _letters.Letter, at: Moving) -> list[np.ndarray]:
+    """Return the corners of the letter at times from 0 to 1, so that a page holds it all along its ways."""
+    return [letter.outline(T) for t in np.linspace(0.0, 1.0, 61) for T in at(float(t))]
 
 
 def picture(records: Sequence[scene.Record]) -> scene.Picture:

@@ -98,16 +98,18 @@ def rigid(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing:
     """T_b R_theta, and R_theta T_b = T_{R_theta b} R_theta."""
     start, R, T_b = m.shift(place), m.turn(theta), m.shift(b)
     shapes = [start, R @ start, T_b @ start, T_b @ R @ start, R @ T_b @ start]
-    one, two = m.parts(t, 2)
-    now = np.stack(
-        [m.shift(two * b) @ m.turn(one * theta) @ start, m.turn(two * theta) @ m.shift(one * b) @ start]
-    )
+
+    def at(t: float) -> list[np.ndarray]:
+        one, two = m.parts(t, 2)
+        long = m.turn(two * theta) @ m.shift(one * b) @ start
+        return [m.shift(two * b) @ m.turn(one * theta) @ start, long]
+
     b_turned = R[:2, :2] @ b
     again = m.same(b, b_turned, float(np.abs(b).max()))
     shown = m.vectors(b, b_turned)
     given = rf"$\theta = {m.degrees(theta)},\;\; b = {shown[0]},\;\; b' = R_\theta\, b = {shown[1]}$"
     records = [
-        *_both_orders(theta, b, b_turned, shapes, now, t, again),
+        *_both_orders(theta, b, b_turned, shapes, at, t, again),
         m.title("two orders, the same end" if again else "two orders, two ends, turned alike"),
         *m.legend([(m.FIRST, r"$T_b\, R_\theta$"), (m.SECOND, r"$R_\theta\, T_b = T_{b'}\, R_\theta$")]),
         m.note(given),
@@ -118,7 +120,7 @@ def rigid(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing:
         "b'": b_turned,
         "stages": np.stack([shapes[0], shapes[1], shapes[3]]),
         "other_order": np.stack([shapes[0], shapes[2], shapes[4]]),
-        "now": now,
+        "now": np.stack(at(t)),
     }
     return Drawing(m.picture(records), numbers)
 
@@ -128,7 +130,7 @@ def _both_orders(
     b: np.ndarray,
     b_turned: np.ndarray,
     shapes: list[np.ndarray],
-    now: np.ndarray,
+    at: m.Moving,
     t: float,
     again: bool,
 ) -> list[scene.Record]:
@@ -141,19 +143,21 @@ def _both_orders(
     angle = m.about(feet[1], feet[1] + b, theta, 0.42 * float(np.linalg.norm(b)))
     around = m.about(m.ORIGIN, feet[0], theta, 0.38 * float(np.linalg.norm(feet[0])))
     letter = _letters.tracked(size, shapes, [*legs, *others, angle])
-    page = m.fit([m.ORIGIN, angle, *legs, *others, *(letter.outline(T) for T in shapes)], size)
+    page = m.fit([m.ORIGIN, angle, *legs, *others, *m.swept(letter, at)], size)
     records: list[scene.Record] = [
         *m.fan(page, m.ORIGIN, others[1], style.ROUTE_2, 0.09),
         *m.fan(page, m.ORIGIN, legs[0], style.ROUTE_1, 0.12),
         *(m.spoke(page, m.ORIGIN, feet[k]) for k in (0, 1, 2, 4)),
         *m.angle(page, around, m.ORIGIN),
         *m.angle(page, angle, feet[1]),
+        *letter.draw(page, m.turn(0.5 * theta) @ shapes[2], _letters.OTHER_GHOST),
         *letter.draw(page, shapes[2], _letters.OTHER_STAGE),
         *letter.stages(page, shapes[:2]),
         *letter.draw(page, shapes[4], _letters.OTHER_END if t == 1.0 else _letters.OTHER_STAGE),
         *letter.draw(page, shapes[3], _letters.END if t == 1.0 else _letters.OUTLINE),
     ]
     if t < 1.0:
+        now = at(t)
         records += letter.draw(page, now[1], _letters.OTHER_END)
         records += letter.draw(page, now[0], _letters.Look(style.AFTER, m.FIRST.text))
     # Where both orders are one, so are the shifts, and one name is enough.
@@ -176,11 +180,14 @@ def about(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing:
     shapes = [m.shift(place)]
     for step in steps:
         shapes.append(step @ shapes[-1])
-    one, two, three = m.parts(t, 3)
-    long = m.shift(three * b) @ m.turn(two * theta) @ m.shift(-one * b) @ shapes[0]
-    now = np.stack([long, m.shift(b) @ m.turn(t * theta) @ m.shift(-b) @ shapes[0]])
+
+    def at(t: float) -> list[np.ndarray]:
+        one, two, three = m.parts(t, 3)
+        long = m.shift(three * b) @ m.turn(two * theta) @ m.shift(-one * b) @ shapes[0]
+        return [long, m.shift(b) @ m.turn(t * theta) @ m.shift(-b) @ shapes[0]]
+
     records = [
-        *_three_steps(theta, b, shapes, now, t),
+        *_three_steps(theta, b, shapes, at, t),
         m.title(r"shift, turn, shift back: a turn about $b$"),
         *m.legend([(m.FIRST, r"$T_b\, R_\theta\, T_{-b}$"), (m.SECOND, r"turn by $\theta$ about $b$")]),
         m.note(rf"$\theta = {m.degrees(theta)},\;\; b = {m.vectors(b)[0]}$"),
@@ -190,13 +197,13 @@ def about(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing:
         "b": b,
         "stages": np.stack(shapes),
         "product": steps[2] @ steps[1] @ steps[0],
-        "now": now,
+        "now": np.stack(at(t)),
     }
     return Drawing(m.picture(records), numbers)
 
 
 def _three_steps(
-    theta: float, b: np.ndarray, shapes: list[np.ndarray], now: np.ndarray, t: float
+    theta: float, b: np.ndarray, shapes: list[np.ndarray], at: m.Moving, t: float
 ) -> list[scene.Record]:
     feet = [T[:2, 2] for T in shapes]
     size = 0.24 * m.extent([m.ORIGIN, b, *feet]) or 1.0
@@ -205,7 +212,7 @@ def _three_steps(
     radius = 0.3 * float(np.linalg.norm(feet[1]))
     angles = [m.about(c, foot, theta, radius) for c, foot in ((m.ORIGIN, feet[1]), (b, feet[0]))]
     letter = _letters.tracked(size, shapes, [*legs, direct, m.straight(m.ORIGIN, b)])
-    page = m.fit([m.ORIGIN, b, direct, *legs, *(letter.outline(T) for T in shapes)], size)
+    page = m.fit([m.ORIGIN, b, direct, *legs, *m.swept(letter, at)], size)
     spokes = ((m.ORIGIN, feet[1]), (m.ORIGIN, feet[2]), (b, feet[0]), (b, feet[3]))
     records: list[scene.Record] = [
         m.area(page, [m.ORIGIN, b, feet[0], feet[1]], style.BEFORE, 0.45),
@@ -215,7 +222,7 @@ def _three_steps(
         *m.angle(page, angles[0], m.ORIGIN),
         *(m.angle(page, angles[1], b) if b.any() else []),
         *letter.stages(page, shapes[:3]),
-        *m.travellers(page, letter, now, shapes[3], t),
+        *m.travellers(page, letter, at(t), shapes[3], t),
     ]
     for k, (curve, name) in enumerate(zip(legs, ("T_{-b}", r"R_\theta", "T_b"), strict=True)):
         # The first beyond the sector about b.
@@ -224,6 +231,6 @@ def _three_steps(
     middle = np.mean(feet, axis=0)
     if b.any():
         records += m.given(page, m.straight(m.ORIGIN, b), "")
-    for text, at in (("$O$", m.ORIGIN), ("$b$", b)) if b.any() else (("$O = b$", m.ORIGIN),):
-        records.append(m.center(page, text, at, at - middle))
+    for text, point in (("$O$", m.ORIGIN), ("$b$", b)) if b.any() else (("$O = b$", m.ORIGIN),):
+        records.append(m.center(page, text, point, point - middle))
     return [*records, page.dots(np.stack([m.ORIGIN, b, *feet]), style.INK, m.DOT)]

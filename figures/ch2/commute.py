@@ -40,7 +40,7 @@ Axis = Literal["x", "y", "z"]
             caption=(
                 "Turn by -theta about the origin O, shift by b, turn back by theta: after the three steps "
                 "the shape stands upright again, and all that has happened is a shift (dashed). Its vector "
-                "is b' = R_theta b, the given b (grey) turned by theta."
+                "is b' = R_theta b, the given b (grey) turned by theta. Faint: halfway on the turn back."
             ),
             params={"group": "normal", "b": (3.6, -0.2), "angle": 140.0, "place": (-2.2, -0.8)},
         ),

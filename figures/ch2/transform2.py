@@ -30,7 +30,7 @@ Vector = tuple[float, float]
                 "R_theta turns the shape about the origin O, then T_b shifts it (solid arrows, orange end). "
                 "In the other order (dashed arrows, purple shapes) it comes to stand turned alike, but "
                 "elsewhere: from the turned shape the shift is b' = R_theta b instead of b, for "
-                "R_theta T_b = T_b' R_theta. The angle between b and b' is theta."
+                "R_theta T_b = T_b' R_theta. The angle between b and b' is theta. Faint: halfway on the turn."
             ),
             params={"kind": "rigid", "angle": 100.0, "b": (2.8, 1.3), "place": (2.8, 0.2)},
         ),
