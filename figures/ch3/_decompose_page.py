@@ -10,7 +10,7 @@ from lietool.render import scene, style
 from lietool.render.plane import Plane, arc, moved, path
 
 from . import _decompose_layout as layouts
-from ._decompose_numbers import fixed, matrices
+from . import _decompose_numbers as factors
 
 _MIDDLE = np.array([600.0, 534.0])
 # How far axes go on past what is drawn, and arrows lie beside a radius, in page units.
@@ -86,7 +86,7 @@ def picture(
     at_once = layouts.ends(layout.centers[0], layout.centers[-1], layout.scale, (panels[0], panels[-1]))
     records += _connector(at_once, "A", (), style.MUTED, (9.0, 6.0))
     records += _remark(steps, d, same, layout)
-    records += matrices([("A", A)] + [(step.name, step.matrix) for step in steps[::-1]])
+    records += factors.matrices([("A", A)] + [(step.name, step.matrix) for step in steps[::-1]])
     return scene.Picture((scene.View(tuple(records)),))
 
 
@@ -201,7 +201,7 @@ def _stretched(place: Plane, stage: Stage, others: np.ndarray) -> list[scene.Rec
 def _said(step: Step, d: np.ndarray) -> tuple[str, ...]:
     """What a step amounts to, in one line or two."""
     if step.kind == "stretch":
-        return tuple(rf"$\sigma_{i + 1} = {fixed(d[i])}$" for i in range(2))
+        return tuple(rf"$\sigma_{i + 1} = {factors.fixed(d[i])}$" for i in range(2))
     angle = rf"{round(np.degrees(step.angle), 1) + 0.0:.1f}^{{\circ}}"
     if step.kind == "flip":
         return r"$\mathrm{mirror\ at}$", f"${angle}$"

@@ -7,14 +7,19 @@ import numpy as np
 
 from lietool.figure import Drawing, Param, Plate, Time, figure
 from lietool.render import scene, style
-from lietool.render.camera import Box
-from lietool.render.plot import Axes, number
+from lietool.render.globe import joined
+from lietool.render.plot import Axes
 
 from . import _blend_circle as circle
 from . import _blend_cone as cone
 
 Symmetric = tuple[float, float, float]
-_START, _END = (2.1, 0.7, 0.6), (0.7, -0.6, 2.6)
+_START, _END = (0.6, 0.2, 2.6), (2.4, 0.9, 0.8)
+# On the page: both plates have one cone; then the circles, the plots, and the flat spaces.
+_CONE = (24.0, 390.0, 640.0, 440.0)
+_CIRCLE_ALONE, _CIRCLE = (677.0, 324.0, 506.0, 506.0), (690.0, 376.0, 480.0, 446.0)
+_PLOTS = ((124.0, 84.0, 440.0, 180.0), (710.0, 84.0, 440.0, 180.0))
+_LEFT, _RIGHT = 344.0, 930.0
 
 
 @figure(
@@ -26,8 +31,8 @@ _START, _END = (2.1, 0.7, 0.6), (0.7, -0.6, 2.6)
                 "Left: the symmetric matrices of the plane, the positive definite ones inside the cone "
                 "det = 0. The blend of two is the segment between them, and all of it is positive "
                 "definite (ellipses: the unit disc under the matrix); it leaves the cone only beyond the "
-                "ends (red). Right: the rotations are a circle. The chord leaves it at once: the blend of "
-                "two rotations is none, and shrinks (glyph). Below: the determinants."
+                "ends (crosses). Right: the rotations are a circle. The chord leaves it at once (red): the "
+                "blend of two rotations is none, and shrinks (glyph). Below: the determinants."
             ),
         ),
         "B4.4": Plate(
@@ -36,8 +41,9 @@ _START, _END = (2.1, 0.7, 0.6), (0.7, -0.6, 2.6)
             caption=(
                 "The logarithm carries the ends to a flat space, the straight line there has equal steps, "
                 "and exp carries it back as a curve in the curved space. Left: from the cone of positive "
-                "definite matrices to sym(2); the curve never leaves the cone. Right: from the circle of "
-                "rotations to the line of angles so(2); the glyph keeps its size. Dashed: the chord."
+                "definite matrices to sym(2), which has three dimensions (grey: the shadow of the line); the "
+                "curve never leaves the cone. Right: from the circle of rotations to the line of angles "
+                "so(2); the glyph keeps its size. Dashed: the chord."
             ),
             params={"view": "linearise"},
         ),
@@ -54,11 +60,11 @@ def blend_space(
     end: Annotated[
         Symmetric, Param("positive definite matrix at t = 1 (xx, xy, yy)", low=-10, high=10)
     ] = _END,
-    angle0: Annotated[float, Param("angle of the rotation at t = 0", "deg", -360.0, 360.0)] = 20.0,
-    angle1: Annotated[float, Param("angle of the rotation at t = 1", "deg", -360.0, 360.0)] = 150.0,
+    angle0: Annotated[float, Param("angle of the rotation at t = 0", "deg", -360.0, 360.0)] = -70.0,
+    angle1: Annotated[float, Param("angle of the rotation at t = 1", "deg", -360.0, 360.0)] = 50.0,
     steps: Annotated[int, Param("equal steps from one end to the other", low=1, high=24)] = 4,
-    beyond: Annotated[float, Param("how far the ways go on before 0 and after 1", low=0.0, high=1.0)] = 0.35,
-    t: Annotated[float, Param("the moment that is marked", low=0.0, high=1.0)] = 0.4,
+    beyond: Annotated[float, Param("how far the ways go on before 0 and after 1", low=0.0, high=1.0)] = 0.4,
+    t: Annotated[float, Param("the moment that is marked", low=0.0, high=1.0)] = 0.38,
 ) -> Drawing:
     """Where one may blend: a convex set holds its segments, a curved one does not; logarithms make it flat.
 
@@ -104,73 +110,103 @@ def _definite(name: str, entries: Symmetric) -> np.ndarray:
 def _convex(
     stretches: cone.Stretches, turns: circle.Turns, times: np.ndarray, t: float, beyond: float
 ) -> scene.Picture:
+    spans = cone.shown(stretches, beyond), np.linspace(-beyond, 1.0 + beyond, 241)
+    ways = stretches.linear, turns.linear
+    highs = [1.1 * max(1.0, float(np.linalg.det(way(s)).max())) for way, s in zip(ways, spans, strict=True)]
+    if max(highs) < 3.0 * min(highs):
+        highs = [max(highs)] * 2
+    xlim = (-beyond, 1.0 + beyond)
+    left, right = (Axes(box, xlim, (0.0, high)) for box, high in zip(_PLOTS, highs, strict=True))
     page: list[scene.Record] = [
-        *_titles(r"$\mathrm{Sym}^{+}(2)\mathrm{\ is\ convex}$", r"$SO(2)\mathrm{\ is\ curved}$"),
-        *circle.records(turns, times, t, beyond, (700.0, 340.0, 460.0, 470.0), False),
-        *_determinants((110.0, 80.0, 440.0, 152.0), stretches.linear, t, beyond, "S", "S"),
-        *_determinants((710.0, 80.0, 400.0, 152.0), turns.linear, t, beyond, "M", "R"),
+        *_titles(r"$\mathrm{Sym}^{+}(2)\mathrm{\ is\ convex}$", r"$\mathrm{SO}(2)\mathrm{\ is\ curved}$"),
+        *circle.records(turns, times, t, beyond, _CIRCLE_ALONE, False),
+        *_cone_set(left, stretches),
+        *_plot(left, spans[0], stretches.linear, t, "S", "S"),
+        *_plot(right, spans[1], turns.linear, t, "M", "R", style.WRONG),
+        *_circle_set(right),
     ]
-    left = cone.view(stretches, times, t, beyond, (24.0, 306.0, 650.0, 540.0), False)
-    return scene.Picture((left, scene.View(tuple(page))))
+    return scene.Picture((cone.view(stretches, times, t, beyond, _CONE, False), scene.View(tuple(page))))
 
 
 def _titles(left: str, right: str) -> list[scene.Record]:
     return [
         scene.Label(text, (x, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
-        for text, x in ((left, 349.0), (right, 930.0))
+        for text, x in ((left, _LEFT), (right, _RIGHT))
     ]
 
 
-def _determinants(
-    box: Box, way: Callable[[np.ndarray], np.ndarray], t: float, beyond: float, name: str, ends: str
+def _plot(
+    axes: Axes,
+    span: np.ndarray,
+    way: Callable[[np.ndarray], np.ndarray],
+    t: float,
+    name: str,
+    ends: str,
+    color: str = style.RIGHT,
 ) -> list[scene.Record]:
-    """The determinant of a blend over t: in red where it is not positive."""
-    span = np.linspace(-beyond, 1.0 + beyond, 241)
+    """The determinant of a blend over t; in red where it is not positive."""
     values, now = np.linalg.det(way(span)), float(np.linalg.det(way(np.array(t))))
-    low, high = float(values.min()), 1.1 * max(1.0, float(values.max()))
-    low = 0.0 if low >= 0.0 else max(1.1 * low, -0.5 * high)
-    axes = Axes(box, (-beyond, 1.0 + beyond), (low, high))
-    # Rotations have 1; where that is too near to 0 to be told from it, the largest value stands instead.
-    one = 1.0 if axes.at(0.0, 1.0)[1] - axes.at(0.0, 0.0)[1] > 34.0 else high / 1.1
-    records = axes.frame(
-        [(0.0, "$0$"), (1.0, "$1$")],
-        [(0.0, "$0$"), (one, f"${one:.3g}$")],
-        "$t$",
-        rf"$\det {name}(t),\ \ {name}(t) = (1 - t)\,{ends}_0 + t\,{ends}_1$",
-        title_size=style.SMALL_TEXT,
-    )
-    good = np.where(values > 0.0, values, np.nan)
-    bad = np.where((values <= 0.0) & (values >= low), values, np.nan)
-    records += [axes.vertical(x, style.RULE) for x in (0.0, 1.0)]
-    records += [axes.curve(span, bad, style.WRONG, dash=(8.0, 6.0)), axes.curve(span, good, style.ALGEBRA)]
-    records.append(scene.Points(axes.at([t], [now]), style.ALGEBRA, 10.0, rim=style.PAPER))
-    records.append(
+    records = axes.frame([(0.0, "$0$"), (1.0, "$1$")], [(0.0, "$0$")])
+    left, low, wide, high = axes.box
+    said = rf"$\det {name}(t),\ \ {name}(t) = (1 - t)\,{ends}_0 + t\,{ends}_1$"
+    records += [
+        scene.Label("$t$", (left + wide, low, 0.0), style.INK, style.SMALL_TEXT, (14.0, 0.0), "lc"),
         scene.Label(
-            f"${number(now)}$",
-            axes.at(t, now),
-            style.ALGEBRA_TEXT,
-            style.SMALL_TEXT,
-            (0.0, 20.0),
-            "cb",
-            room=70.0,
-        )
-    )
-    return records
+            said, (left + wide / 2.0, low + high, 0.0), style.INK, style.SMALL_TEXT, (0.0, 22.0), "cb"
+        ),
+        *(axes.vertical(x, style.RULE) for x in (0.0, 1.0)),
+        axes.curve(span, np.where(values <= 0.0, values, np.nan), style.WRONG),
+        axes.curve(span, np.where(values >= 0.0, values, np.nan), color),
+        scene.Points(axes.at([t], [now]), color, 10.0, rim=style.PAPER),
+    ]
+    # On the hollow side of the curve, and under the line of the rotations where there is room for it.
+    room = 0.0 if axes.at(t, 1.0)[1] - axes.at(t, now)[1] > 40.0 else 45.0
+    place = ((0.0, -18.0), "ct") if np.diff(values, n=2).mean() < 0.0 else ((0.0, 14.0), "cb")
+    text = style.ALGEBRA_TEXT if color == style.RIGHT else color
+    value = f"${round(now, 2) + 0.0:.2f}$"
+    return [*records, scene.Label(value, axes.at(t, now), text, style.SMALL_TEXT, *place, room=room)]
+
+
+def _cone_set(axes: Axes, stretches: cone.Stretches) -> list[scene.Record]:
+    """Where a determinant belongs to a positive definite matrix, and where the line leaves these."""
+    (x0, x1), (_, high) = axes.xlim, axes.ylim
+    corners = axes.at([x0, x1, x1, x0], [0.0, 0.0, high, high])
+    arms = 8.0 * np.array([[1.0, 1.0, 0.0], [-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0]])
+    crosses = [axes.at(exit, 0.0) + arms for exit in stretches.exits() if x0 <= exit <= x1]
+    return [
+        scene.Surface(corners, [[0, 1, 2], [0, 2, 3]], style.GROUP, material="flat", alpha=0.10),
+        *(scene.Lines(joined([cross[:2], cross[2:]]), style.WRONG, style.CURVE) for cross in crosses),
+    ]
+
+
+def _circle_set(axes: Axes) -> list[scene.Record]:
+    """The determinant of a rotation, which only the ends have."""
+    one = axes.at(np.array(axes.xlim), 1.0)
+    records: list[scene.Record] = [
+        scene.Lines(one, style.GROUP, 1.6 * style.CURVE),
+        scene.Points(axes.at([0.0, 1.0], [1.0, 1.0]), style.GROUP_TEXT, 8.0, shaded=False),
+    ]
+    # A tick that is too near to that of 0 is left out.
+    if one[0, 1] - axes.box[1] > 34.0:
+        records.append(scene.Label("$1$", one[0], style.INK, style.SMALL_TEXT, (-14.0, 0.0), "rc"))
+    name = r"$\mathrm{SO}(2)$"
+    at = axes.at(0.5, 1.0)
+    return [*records, scene.Label(name, at, style.GROUP_TEXT, style.SMALL_TEXT, (0.0, 12.0), "cb", room=60.0)]
 
 
 def _linearise(
     stretches: cone.Stretches, turns: circle.Turns, times: np.ndarray, t: float, beyond: float
 ) -> scene.Picture:
     page: list[scene.Record] = [
-        *_titles(r"$\mathrm{Sym}^{+}(2)$", r"$SO(2)$"),
-        *circle.records(turns, times, t, beyond, (700.0, 352.0, 460.0, 462.0), True),
-        *circle.flat(turns, times, t, beyond, (720.0, 60.0, 420.0, 190.0)),
+        *_titles(r"$\mathrm{Sym}^{+}(2)$", r"$\mathrm{SO}(2)$"),
+        *circle.records(turns, times, t, beyond, _CIRCLE, True),
+        *circle.flat(turns, times, t, beyond, (700.0, 80.0, 460.0, 180.0)),
     ]
-    for x, below in ((349.0, r"$\mathrm{sym}(2)$"), (930.0, r"$\mathfrak{so}(2)$")):
-        page += _there_and_back(x, 268.0, 338.0)
+    for x, below in ((_LEFT, r"$\mathfrak{sym}(2)$"), (_RIGHT, r"$\mathfrak{so}(2)$")):
+        page += _there_and_back(x, 300.0, 366.0)
         page.append(scene.Label(below, (x, 38.0, 0.0), style.ALGEBRA_TEXT, style.TITLE_TEXT, anchor="cn"))
-    top = cone.view(stretches, times, t, beyond, (24.0, 344.0, 650.0, 480.0), True)
-    bottom = cone.flat(stretches, times, t, beyond, (67.0, 70.0, 564.0, 200.0))
+    top = cone.view(stretches, times, t, beyond, _CONE, True)
+    bottom = cone.flat(stretches, times, t, beyond, (74.0, 78.0, 540.0, 216.0))
     return scene.Picture((top, bottom, scene.View(tuple(page))))
 
 
