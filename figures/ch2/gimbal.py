@@ -48,14 +48,18 @@ NAMES = (r"\theta_1", r"\theta_2", r"\theta_3")
 )
 def gimbal(
     view: Annotated[Literal["rings", "angles"], Param("the rings, or the angles as curves")] = "rings",
-    theta1: Annotated[float, Param("turn of the inner ring about x", "deg", -360.0, 360.0)] = -14.0,
+    theta1: Annotated[
+        float, Param("turn of the inner ring about x", "deg", -360.0, 360.0, only=("view", "rings"))
+    ] = -14.0,
     theta2: Annotated[
         float,
         Param(
             "turn of the middle ring about y; in the curves, the angle that is marked", "deg", -180.0, 180.0
         ),
     ] = -20.0,
-    theta3: Annotated[float, Param("turn of the outer ring about z", "deg", -360.0, 360.0)] = -4.0,
+    theta3: Annotated[
+        float, Param("turn of the outer ring about z", "deg", -360.0, 360.0, only=("view", "rings"))
+    ] = -4.0,
 ) -> Drawing:
     """Gimbal lock: two of the three axes of the Euler angles coincide, and the angles jump.
 

@@ -52,12 +52,18 @@ def groups(
         Param("which groups, and how they are laid out"),
     ] = "dual-quaternion",
     n: Annotated[
-        Literal["both", "2", "3"], Param("dimension of the space; both in the inclusions, else 3")
+        Literal["both", "2", "3"],
+        Param(
+            "dimension of the space; both in the inclusions, else 3",
+            only=("diagram", "inclusions", "hierarchy", "custom"),
+        ),
     ] = "both",
     nodes: Annotated[
-        str, Param("groups of a custom diagram, such as SO(2),SO,DQ; to name any is to ask for one")
+        str, Param("groups with commas between them, such as SO(2),SO,DQ", only=("diagram", "custom"))
     ] = ALL,
-    seed: Annotated[int, Param("of the shape's deformation in the hierarchy", low=0, high=9999)] = 9337,
+    seed: Annotated[
+        int, Param("of the shape's deformation", low=0, high=9999, only=("diagram", "hierarchy"))
+    ] = 9337,
 ) -> Drawing:
     """How the groups lie in each other: a cube, or layers, drawn from what is known of each.
 
@@ -67,10 +73,10 @@ def groups(
     elements lead to each. Whatever is drawn is looked up: dimension,
     compactness and components in the records of the groups, the arrows as the
     steps between which no other group of the diagram lies. Name your own with
-    --nodes, such as --nodes SO(2),SO,SE,GL+,DQ.
+    --diagram custom --nodes "SO(2),SO,SE,GL+,DQ".
     """
     dimension = 2 if n == "2" else 3
-    if diagram == "custom" or nodes != ALL:
+    if diagram == "custom":
         return order.drawing(order.read(nodes, dimension))
     if diagram == "hierarchy":
         return classes.drawing(dimension, seed)

@@ -54,13 +54,20 @@ def exp_singularity(
     ] = 500.0,
     azimuth: Annotated[
         float,
-        Param("direction of the marked rotation vector in the plane of the stages", "deg", -360.0, 360.0),
+        Param(
+            "direction of the marked rotation vector in its plane",
+            "deg",
+            -360.0,
+            360.0,
+            only=("view", "stages"),
+        ),
     ] = -50.0,
     shells: Annotated[
-        int, Param("number of shells in the stages; a longer turn brings more", low=1, high=3)
+        int, Param("number of shells; a longer turn brings more", low=1, high=3, only=("view", "stages"))
     ] = 3,
     aside: Annotated[
-        float, Param("rotation about z that moves the second path off I", "deg", 1.0, 60.0)
+        float,
+        Param("rotation about z that moves the second path off I", "deg", 1.0, 60.0, only=("view", "paths")),
     ] = 20.0,
 ) -> Drawing:
     """The exponential map of SO(3) folds space: at |x| = 2n pi a whole sphere goes to the identity.

@@ -30,7 +30,7 @@ def shown(request):
     if request.param in SETS:
         return (
             _groups_order.read(SETS[request.param], 3),
-            GROUPS.draw(nodes=SETS[request.param]),
+            GROUPS.draw(diagram="custom", nodes=SETS[request.param]),
         )
     nodes = {
         "B2.9": _groups_cube.DUAL_NODES,
@@ -249,7 +249,7 @@ class TestLayout:
     @pytest.mark.parametrize("which", SETS)
     def test_words_lie_on_even_ground(self, which):
         """No label is cut, meets another, or has a line under it."""
-        picture = GROUPS.draw(nodes=SETS[which]).picture
+        picture = GROUPS.draw(diagram="custom", nodes=SETS[which]).picture
         rendered = draw.render(picture, draft=True)
         bare = scene.Picture(
             tuple(
@@ -310,12 +310,12 @@ class TestNodes:
     )
     def test_refused_in_one_line(self, nodes, complaint):
         with pytest.raises(ValueError, match=complaint) as refused:
-            GROUPS.draw(nodes=nodes)
+            GROUPS.draw(diagram="custom", nodes=nodes)
         assert "\n" not in str(refused.value)
 
     def test_dimension_of_the_space(self):
         assert _groups_order.read("SO,SE(2), DQ", 3) == [("SO", 3), ("SE", 2), ("DQ", 3)]
-        flat = GROUPS.draw(nodes="SO,SE,S^1,DCN", n="2").numbers
+        flat = GROUPS.draw(diagram="custom", nodes="SO,SE,S^1,DCN", n="2").numbers
         assert flat["nodes"] == ["SO(2)", "SE(2)", "S^1", "DCN"]
 
     def test_both_dimensions_or_one(self):
