@@ -52,16 +52,37 @@ def commute(
         Literal["translation2", "rotation2", "rotation3", "normal"],
         Param("two translations, two rotations of the plane or of space, or a turned translation"),
     ] = "translation2",
-    b: Annotated[Vector, Param("the shift b (x, y)", low=-100.0, high=100.0)] = (4.0, 0.3),
-    b2: Annotated[Vector, Param("the shift b' (x, y) of translation2", low=-100.0, high=100.0)] = (1.0, 2.4),
-    angle: Annotated[float, Param("the angle of the first turn, or theta", "deg", -1080.0, 1080.0)] = 30.0,
-    angle2: Annotated[float, Param("the angle of the second turn", "deg", -1080.0, 1080.0)] = 45.0,
-    axis: Annotated[Axis, Param("what the first turn of rotation3 is about")] = "x",
-    axis2: Annotated[Axis, Param("what the second turn of rotation3 is about")] = "z",
+    b: Annotated[
+        Vector, Param("the shift b (x, y)", low=-100.0, high=100.0, only=("group", "translation2", "normal"))
+    ] = (4.0, 0.3),
+    b2: Annotated[
+        Vector, Param("the shift b' (x, y)", low=-100.0, high=100.0, only=("group", "translation2"))
+    ] = (1.0, 2.4),
+    angle: Annotated[
+        float,
+        Param(
+            "the angle of the first turn, or theta",
+            "deg",
+            -1080.0,
+            1080.0,
+            only=("group", "rotation2", "rotation3", "normal"),
+        ),
+    ] = 30.0,
+    angle2: Annotated[
+        float,
+        Param(
+            "the angle of the second turn", "deg", -1080.0, 1080.0, only=("group", "rotation2", "rotation3")
+        ),
+    ] = 45.0,
+    axis: Annotated[Axis, Param("what the first turn is about", only=("group", "rotation3"))] = "x",
+    axis2: Annotated[Axis, Param("what the second turn is about", only=("group", "rotation3"))] = "z",
     place: Annotated[
         Vector,
         Param(
-            "where the marked corner of the shape stands (x, y); not for rotation3", low=-100.0, high=100.0
+            "where the marked corner of the shape stands (x, y)",
+            low=-100.0,
+            high=100.0,
+            only=("group", "translation2", "rotation2", "normal"),
         ),
     ] = (0.9, 2.7),
     t: Annotated[float, Param("how much of the ways is done", low=0.0, high=1.0)] = 1.0,

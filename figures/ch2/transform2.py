@@ -54,14 +54,17 @@ def transform2(
     ] = "rotation",
     angle: Annotated[float, Param("the angle theta of the turn", "deg", -1080.0, 1080.0)] = 150.0,
     b: Annotated[
-        Vector, Param("the shift b (x, y); with about, the centre of the turn", low=-100.0, high=100.0)
+        Vector,
+        Param(
+            "the shift b (x, y); with about, the centre of the turn",
+            low=-100.0,
+            high=100.0,
+            only=("kind", "rigid", "about"),
+        ),
     ] = (2.2, -0.6),
     place: Annotated[
         Vector, Param("where the marked corner of the shape stands (x, y)", low=-100.0, high=100.0)
-    ] = (
-        2.1,
-        -1.1,
-    ),
+    ] = (2.1, -1.1),
     t: Annotated[float, Param("how much of the motion is done", low=0.0, high=1.0)] = 1.0,
 ) -> Drawing:
     """A turn, a turn with a shift, or a turn about another point, of a shape in the plane.

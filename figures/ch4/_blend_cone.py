@@ -220,25 +220,26 @@ def flat(ends: Stretches, times: np.ndarray, t: float, beyond: float, box: Box) 
     half = max(0.6, 1.1 * float(np.abs(line[:, :2]).max()))
     low, high = (
         float(min(line[:, 2].min(), 0.0)) - 0.35 * half,
-        float(max(line[:, 2].max(), 0.0)) + 0.2 * half,
+        float(max(line[:, 2].max(), 0.0)) + 0.45 * half,
     )
     square = half * np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]], float)
-    floor, ceiling = (square + np.array([0.0, 0.0, z]) for z in (low, high))
-    camera = cameras.around(np.concatenate([floor, ceiling]), _FLAT_DIRECTION, box, 1.04)
+    floor = square + np.array([0.0, 0.0, low])
+    axis = np.array([[0.0, 0.0, low], [0.0, 0.0, high]])
+    camera = cameras.around(np.concatenate([floor, axis, line]), _FLAT_DIRECTION, box, 1.04)
     grid = [np.array([[x, -half, low], [x, half, low]]) for x in np.linspace(-half, half, 9)[1:-1]]
     grid += [g[:, [1, 0, 2]] for g in grid]
-    edges = [np.stack(pair) for pair in zip(floor[:4], ceiling[:4], strict=True)]
 
     def shadow(points: np.ndarray) -> np.ndarray:
         return points * (1.0, 1.0, 0.0) + (0.0, 0.0, low)
 
     zero = np.zeros(3)
-    drops = joined(np.stack([point, shadow(point)]) for point in (*balls[[0, -1]], zero))
+    drops = joined(np.stack([point, shadow(point)]) for point in balls)
     blue = style.ALGEBRA_TEXT
     records: list[scene.Record] = [
         scene.Surface(floor[:4], [[0, 1, 2], [0, 2, 3]], style.BAND, material="flat"),
         scene.Lines(joined(grid), style.ALGEBRA, style.HAIR, 0.25),
-        scene.Lines(joined([floor, ceiling, *edges]), style.ALGEBRA, style.HAIR, 0.5),
+        scene.Lines(floor, style.ALGEBRA, style.THIN, 0.7),
+        scene.Lines(axis, style.MUTED, style.THIN, 0.8, dash=(2.0, 6.0)),
         scene.Lines(drops, style.MUTED, style.HAIR),
         scene.Lines(shadow(line), style.GREYS[1], style.CURVE),
         scene.Lines(line, style.ALGEBRA, style.EDGE),
@@ -248,7 +249,13 @@ def flat(ends: Stretches, times: np.ndarray, t: float, beyond: float, box: Box) 
         scene.Points([zero], style.INK, 6.0),
         scene.Label("$0$", zero, style.INK, style.SMALL_TEXT, (14.0, -2.0), "lc"),
     ]
+    # Away from the other one, as the page shows them.
+    apart = float(np.sign(camera.axes[0] @ (balls[-1] - balls[0]) + 1e-12))
     for ball, name, k in ((balls[0], r"$\log S_0$", 0.0), (balls[-1], r"$\log S_1$", 1.0)):
         if abs(t - k) > 0.08:
-            records.append(scene.Label(name, ball, blue, style.SMALL_TEXT, (0.0, 16.0), "cb", room=45.0))
+            side = apart * (2.0 * k - 1.0)
+            anchor = "lb" if side > 0.0 else "rb"
+            records.append(
+                scene.Label(name, ball, blue, style.SMALL_TEXT, (8.0 * side, 12.0), anchor, room=45.0)
+            )
     return scene.View(tuple(records), camera, box)

@@ -206,7 +206,7 @@ def _linearise(
         page += _there_and_back(x, 300.0, 366.0)
         page.append(scene.Label(below, (x, 38.0, 0.0), style.ALGEBRA_TEXT, style.TITLE_TEXT, anchor="cn"))
     top = cone.view(stretches, times, t, beyond, _CONE, True)
-    bottom = cone.flat(stretches, times, t, beyond, (74.0, 78.0, 540.0, 216.0))
+    bottom = cone.flat(stretches, times, t, beyond, (57.0, 78.0, 540.0, 216.0))
     return scene.Picture((top, bottom, scene.View(tuple(page))))
 
 

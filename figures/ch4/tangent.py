@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from lietool.figure import Drawing, Param, Plate, Time, figure
 from lietool.render import camera as cameras
-from lietool.render import marks, scene, solids, style
+from lietool.render import marks, scene, style
 from lietool.render.globe import joined
 
 from . import _tangent_groups as groups
@@ -94,11 +94,11 @@ def _picture(chart: groups.Chart, curve: _Curve, t: float) -> scene.Picture:
     camera = cameras.around(seen, _DIRECTION, _BOX, 1.03)
     records: list[scene.Record] = [
         *_surface(dome, camera),
-        *_plane(half),
         *_curves(chart, curve, t, 0.0075 * camera.height),
     ]
-    # What lies in the plane is seen in full: half of its thickness is under the plane.
+    # The eye is above the plane, and all of the group below it: the plane, and what lies in it, come after.
     above: list[scene.Record] = [
+        *_plane(half),
         *_flat(chart, curve, t, 0.0075 * camera.height),
         *_names(chart, curve, t, half, camera),
         _named(dome, camera),
@@ -150,12 +150,8 @@ def _plane(half: float) -> list[scene.Record]:
     grid = [np.array([[x, -half, 0.0], [x, half, 0.0]]) for x in steps]
     grid += [line[:, [1, 0, 2]] for line in grid]
     corners = half * _SQUARE
-    # In small pieces, since what is translucent is sorted by depth.
-    n = 33
-    x, y = np.meshgrid(*2 * [np.linspace(-half, half, n)])
-    sheet = np.stack([x, y, 0.0 * x], axis=-1).reshape(-1, 3)
     return [
-        scene.Surface(sheet, solids.grid_faces(n, n), style.BAND, material="flat", alpha=0.3),
+        scene.Surface(corners, [[0, 1, 2], [0, 2, 3]], style.BAND, material="flat", alpha=0.3),
         scene.Lines(joined(grid), style.ALGEBRA, style.HAIR, 0.35),
         scene.Lines(np.concatenate([corners, corners[:1]]), style.ALGEBRA, style.EDGE),
     ]

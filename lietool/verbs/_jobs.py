@@ -65,4 +65,3 @@ def threads(jobs: int) -> int:
 
 def _begin(count: int) -> None:
     os.environ.setdefault("LP_NUM_THREADS", str(count))
-

@@ -5,7 +5,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from lietool.mesh import shapes
+from lietool.render import letter
 
 
 def area(outline: np.ndarray) -> float:
@@ -15,21 +15,21 @@ def area(outline: np.ndarray) -> float:
 
 class TestOutline:
     def test_size(self):
-        outline = shapes.letter_outline()
+        outline = letter.outline()
         assert outline.shape == (10, 2)
         assert outline.max(axis=0).tolist() == [0.375, 0.5] and outline.min(axis=0).tolist() == [-0.375, -0.5]
         # Seven of the sixteenths of the square: four in the stem, two in the upper bar, one in the lower.
         assert area(outline) == pytest.approx(7 / 16)
 
     def test_it_has_no_symmetry(self):
-        outline = {tuple(p) for p in shapes.letter_outline().tolist()}
+        outline = {tuple(p) for p in letter.outline().tolist()}
         for matrix in ([[-1, 0], [0, 1]], [[1, 0], [0, -1]], [[-1, 0], [0, -1]], [[0, 1], [1, 0]]):
-            assert {tuple(p) for p in (shapes.letter_outline() @ np.array(matrix)).tolist()} != outline
+            assert {tuple(p) for p in (letter.outline() @ np.array(matrix)).tolist()} != outline
 
 
 class TestSolid:
     def test_closed_and_oriented(self):
-        vertices, faces, side = shapes.letter_solid()
+        vertices, faces, side = letter.solid()
         assert (vertices.shape, faces.shape, side.shape) == ((20, 3), (36, 3), (36,))
         edges = Counter(
             (a, b) for face in faces.tolist() for a, b in zip(face, face[1:] + face[:1], strict=True)
@@ -41,12 +41,12 @@ class TestSolid:
 
     @pytest.mark.parametrize("depth", [0.05, 0.25, 1.0])
     def test_volume(self, depth):
-        vertices, faces, _ = shapes.letter_solid(depth)
+        vertices, faces, _ = letter.solid(depth)
         a, b, c = (vertices[faces[:, i]] for i in range(3))
         assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(7 / 16 * depth)
 
     def test_sides(self):
-        vertices, faces, side = shapes.letter_solid()
+        vertices, faces, side = letter.solid()
         corners = vertices[faces]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         assert np.linalg.norm(normals, axis=-1).min() > 0
