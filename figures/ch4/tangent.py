@@ -96,14 +96,13 @@ def _picture(chart: groups.Chart, curve: _Curve, t: float) -> scene.Picture:
         *_surface(dome, camera),
         *_curves(chart, curve, t, 0.0075 * camera.height),
     ]
-    # The eye is above the plane, and all of the group below it: the plane, and what lies in it, come after.
+    # The eye is above the plane, the group below it: they are laid over each other in this order.
     above: list[scene.Record] = [
-        *_plane(half),
         *_flat(chart, curve, t, 0.0075 * camera.height),
         *_names(chart, curve, t, half, camera),
         _named(dome, camera),
     ]
-    views = scene.View(tuple(records), camera, _BOX), scene.View(tuple(above), camera, _BOX)
+    views = (scene.View(tuple(layer), camera, _BOX) for layer in (records, _plane(half), above))
     return scene.Picture((*views, scene.View(tuple(_formulas(chart)))))
 
 
