@@ -64,4 +64,5 @@ def threads(jobs: int) -> int:
 
 
 def _begin(count: int) -> None:
+    # Read by Mesa when it is loaded, which it is not yet.
     os.environ.setdefault("LP_NUM_THREADS", str(count))
