@@ -17,7 +17,7 @@ from lietool import parameter as _parameter
 from lietool.parameter import Parameter, nearest
 
 # The options that every figure command has; no parameter may be called so.
-RESERVED = ("output", "size", "draft", "json", "plate", "backend", "help")
+RESERVED = ("output", "plate", "theme", "size", "dpi", "seconds", "fps", "draft", "json", "backend", "help")
 
 # Of an animation: one that is longer would never end, or has frames longer than a GIF can say.
 _MOST_FRAMES, _LONGEST = 1000, 600.0
@@ -119,6 +119,11 @@ class Figure:
                 ) from None
         return values
 
+    def idle(self, values: Mapping[str, object], given: Iterable[str]) -> list[Parameter]:
+        """Return those of the given parameters that have no part in the picture of these values."""
+        named = set(given)
+        return [p for p in self.parameters if p.name in named and p.idle(values)]
+
     def plate_params(self, plate_id: str) -> dict[str, Any]:
         """Return the parameters of a plate: the defaults, and over them its own.
 
@@ -175,6 +180,7 @@ def _checked(
     name = function.__name__.replace("_", "-")
     read = tuple(_read_signature(function))
     checked = Figure(name, function, read, plates, time, file, chapter, summary, help_text)
+    _check_only(checked)
     _check_plates(checked)
     if time:
         _check_time(time, read)
@@ -192,6 +198,19 @@ def _read_signature(function: Callable[..., Drawing]) -> Iterable[Parameter]:
             yield _parameter.read(name, hints.get(name), argument.default)
         except ValueError as error:
             raise ValueError(f"parameter {name} {error}") from None
+
+
+def _check_only(figure: Figure) -> None:
+    choices = {parameter.name: parameter.param.choices for parameter in figure.parameters}
+    for parameter in figure.parameters:
+        if not parameter.param.only:
+            continue
+        name, *some = parameter.param.only
+        if not some or not set(some) <= set(choices.get(name, ())):
+            raise ValueError(
+                f"parameter {parameter.name}: only must be another parameter and some of its choices; "
+                f"got {parameter.param.only}. Correct it"
+            )
 
 
 def _check_plates(figure: Figure) -> None:

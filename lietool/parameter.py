@@ -6,7 +6,7 @@ import os
 import re
 import types
 import typing
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from numbers import Integral, Real
 from pathlib import Path
@@ -23,6 +23,8 @@ class Param:
     """What a signature says about a parameter beside its type; it stands inside `Annotated`.
 
     Components of a vector that `help` names, as in ``"start (w, x, y, z)"``, are named in messages too.
+    `only` names another parameter and those of its choices with which this one has a part in the picture:
+    ``only=("view", "rings")``.
     """
 
     help: str
@@ -30,6 +32,7 @@ class Param:
     low: float | None = None
     high: float | None = None
     choices: tuple[str, ...] = ()
+    only: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,18 @@ class Parameter:
         elif high is not None:
             words = f"at most {high:g}"
         return f"{words} {self.param.unit}".strip()
+
+    @property
+    def where(self) -> str:
+        """With which choice it has a part, in words: ``"with --view rings"``, or nothing."""
+        if not self.param.only:
+            return ""
+        name, *choices = self.param.only
+        return f"with --{name.replace('_', '-')} {' or '.join(choices)}"
+
+    def idle(self, values: Mapping[str, object]) -> bool:
+        """Return whether it has no part in the picture, given all parameters."""
+        return bool(self.param.only) and values[self.param.only[0]] not in self.param.only[1:]
 
     @property
     def components(self) -> str:

@@ -1,6 +1,7 @@
 """One environment for all tests, what a missing renderer means, and every plate drawn once."""
 
 import os
+import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -16,6 +17,7 @@ from lietool.render.compose import PlacedLabel
 from lietool.verbs import _studio
 
 _REQUIRE = "LIETOOL_REQUIRE_RENDERER"
+_REQUIRE_BROWSER = "LIETOOL_REQUIRE_BROWSER"
 # What the caller set for other purposes: no test may pass or fail by it.
 _FOREIGN = ("GALLIUM_DRIVER", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH", "SOURCE_DATE_EPOCH")
 
@@ -23,7 +25,7 @@ _FOREIGN = ("GALLIUM_DRIVER", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH", "SOURC
 def pytest_configure() -> None:
     """Forget the caller's settings before figures are listed, which happens before any fixture runs."""
     for name in list(os.environ):
-        if name in _FOREIGN or (name.startswith("LIETOOL_") and name != _REQUIRE):
+        if name in _FOREIGN or (name.startswith("LIETOOL_") and name not in (_REQUIRE, _REQUIRE_BROWSER)):
             del os.environ[name]
 
 
@@ -58,10 +60,20 @@ def _without_renderer() -> Iterator[None]:
         _give_up(reason)
 
 
-def _give_up(reason: str) -> NoReturn:
-    if os.environ.get(_REQUIRE) == "1":
-        pytest.fail(f"{_REQUIRE}=1, but {reason}", pytrace=False)
+def _give_up(reason: str, unless: str = _REQUIRE) -> NoReturn:
+    if os.environ.get(unless) == "1":
+        pytest.fail(f"{unless}=1, but {reason}", pytrace=False)
     pytest.skip(reason)
+
+
+@pytest.fixture(scope="session")
+def chromium() -> tuple[str, str]:
+    """The browser and what drives it, for tests of pages."""
+    found = [shutil.which(name) for name in ("chromium", "chromedriver")]
+    for name, path in zip(("chromium", "chromium-driver"), found, strict=True):
+        if path is None:
+            _give_up(f"{name} is not installed; apt-get install chromium chromium-driver", _REQUIRE_BROWSER)
+    return str(found[0]), str(found[1])
 
 
 @dataclass(frozen=True, eq=False)

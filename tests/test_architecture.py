@@ -15,7 +15,7 @@ _ROOT = paths.PACKAGE.parent
 # What stands below everything, and imports only the standard library.
 _BASE = {"paths", "atomic", "cache", "lietool"}
 # Imported inside functions only, wherever they are allowed: each takes a noticeable part of a second.
-_SLOW = {"matplotlib", "scipy", "skimage", "trimesh", "svgelements", "imageio", "rich", "numba"}
+_SLOW = {"av", "matplotlib", "scipy", "skimage", "trimesh", "svgelements", "imageio", "rich", "numba"}
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ def _rule(ours: str = "", others: str = "", lazily: str = "", ours_lazily: str =
 
 
 _BELOW = "paths atomic cache"
-_ALL = "bench lie mesh interp deform render golden figure verbs lietool " + _BELOW
+_ALL = "bench gallery lie mesh interp deform render golden figure verbs lietool " + _BELOW
 RULES = {
     "lietool": _rule(),
     "paths": _rule(),
@@ -50,8 +50,9 @@ RULES = {
     "interp": _rule("interp lie mesh", "numpy", "scipy skimage"),
     "deform": _rule("deform lie mesh", "numpy", "scipy skimage"),
     "bench": _rule("bench lie", "numpy mpmath", "scipy pytransform3d"),
-    "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib imageio"),
+    "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib av"),
     "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest"),
+    "gallery": _rule("gallery " + _BELOW, "jinja2 markupsafe", "matplotlib"),
     "verbs": _rule(_ALL, "click", "numpy PIL rich moderngl"),
     # Imported by a verb when it is called, so what it needs may stand at its top.
     "a part of a verb": _rule(_ALL, "click numpy", "PIL rich moderngl"),

@@ -2,10 +2,13 @@
 
 import errno
 import json
+import math
 import os
+import re
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import click
@@ -16,8 +19,8 @@ from PIL import Image, ImageSequence
 import lietool
 from lietool import atomic, figure, paths
 from lietool.cli import command
-from lietool.render import context, draw
-from lietool.verbs import _command, _picture, bench
+from lietool.render import context, draw, style, theme, video
+from lietool.verbs import _command, _film, _picture, _size, bench
 
 _BALL = '''
 """A ball on a circle."""
@@ -66,6 +69,26 @@ def still() -> Drawing:
     """Nothing but paper."""
     return Drawing(Picture((), (64, 48)), {})
 '''
+_CHOICE = '''
+from typing import Annotated, Literal
+
+from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.render.scene import Picture
+
+
+@figure(
+    plates={"C1": Plate("One", (), "One."), "C2": Plate("Two", (), "Two.", {"view": "two"})},
+    time=Time("turn", 0, 90),
+)
+def choice(
+    view: Annotated[Literal["one", "two", "three"], Param("what to draw")] = "one",
+    turn: Annotated[float, Param("swept angle", "deg", 0, 90, only=("view", "one", "three"))] = 0.0,
+    bold: Annotated[bool, Param("thick lines", only=("view", "two"))] = False,
+) -> Drawing:
+    """Choose."""
+    return Drawing(Picture((), (64, 48)), {})
+'''
+_ENDINGS = ".png, .svg, .pdf, .gif, .apng or .mp4"
 
 
 @pytest.fixture
@@ -150,15 +173,50 @@ def test_help_of_a_figure_says_all(folder: Path) -> None:
         assert f"--{option} " in text
 
 
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (
+            "--view two --turn 3",
+            "--turn has a part in the picture only with --view one or three. Leave it out, or write that",
+        ),
+        (
+            "--plate C2 --turn 3",
+            "--turn has a part in the picture only with --view one or three. Leave it out, or write that",
+        ),
+        ("--no-bold", "--bold has a part in the picture only with --view two. Leave it out, or write that"),
+        (
+            "--view two -o a.gif",
+            "a .gif sweeps --turn, which has a part in the picture only with --view one or three. "
+            "Write a .png",
+        ),
+    ],
+)
+def test_an_option_without_a_part_in_the_picture(folder: Path, arguments: str, line: str) -> None:
+    (folder.parent / "project/figures/ch9/choice.py").write_text(_CHOICE)
+    assert _refused(_run("choice", *arguments.split())) == f"lietool choice: {line}"
+    text = " ".join(_run("choice", "--help").stdout.split())
+    assert "swept angle [with --view one or three; 0 to 90 deg; default 0]" in text
+    assert "thick lines [with --view two; default --no-bold]" in text
+    for fine in ("--plate C2 --view three --turn 3", "--view two --bold", "--turn 3"):
+        assert _run("choice", *fine.split(), "--json").exit_code == 0
+
+
 def test_the_common_options_are_the_reserved_names(folder: Path) -> None:
-    made = _command.command(figure.load("still"))
-    names = {name for option in made.get_params(click.Context(made)) for name in option.opts}
-    assert names == {"-o", *(f"--{name}" for name in figure.RESERVED)}
+    def names(figure_: figure.Figure) -> set[str]:
+        made = _command.command(figure_)
+        options = {name for option in made.get_params(click.Context(made)) for name in option.opts}
+        return options - {parameter.option for parameter in figure_.parameters}
+
+    assert names(figure.load("ball")) == {"-o", *(f"--{name}" for name in figure.RESERVED)}
+    assert names(figure.load("ball")) - names(figure.load("still")) == {"--seconds", "--fps"}
 
 
-def test_backends_and_sizes_are_those_of_the_renderer() -> None:
-    assert _command.LARGEST == draw.LARGEST
+def test_backends_sizes_and_themes_are_those_of_the_renderer() -> None:
+    assert _size.LARGEST == draw.LARGEST
     assert _command.BACKENDS == context.BACKENDS
+    assert set(_picture.THEMES) == theme.THEMES.keys()
+    assert _picture.Quality().look == theme.BOOK
 
 
 def test_a_png_remembers_what_it_is(folder: Path) -> None:
@@ -171,7 +229,7 @@ def test_a_png_remembers_what_it_is(folder: Path) -> None:
         red, green, _ = image.convert("RGB").getpixel((32, 8))  # type: ignore[misc]
     assert red > 150 > green
     assert text["Software"] == f"lietool {lietool.__version__}"
-    assert (text["command"], text["plate"]) == ("ball", "T1")
+    assert (text["command"], text["plate"], text["Title"]) == ("ball", "T1", "Ball")
     assert json.loads(text["parameters"])["q0"] == [1.0, 0.0, 0.0, 0.0]
     assert text["renderer"] == context.get().info["renderer"]
 
@@ -187,7 +245,7 @@ def test_a_plate_is_a_start_and_options_win(folder: Path) -> None:
     assert hue("--hue", "red", "--plate", "T1b") == "red"
     _run("ball", "--draft", "--plate", "T1b", "--turn", "3", "-o", "a.png")
     with Image.open(folder / "a.png") as image:
-        assert "plate" not in image.info
+        assert "plate" not in image.info and image.info["Title"] == "A ball on a circle"
 
 
 def test_json_alone_writes_nothing_and_with_output_both(folder: Path) -> None:
@@ -238,31 +296,118 @@ def test_values_that_begin_with_a_minus(folder: Path) -> None:
         ("ball --turn", " ball: Option '--turn' requires an argument."),
         (
             "ball --size 0x3",
-            " ball: --size must be width x height in pixels, each 1 to 20000; got '0x3'. "
-            "Write for example --size 1200x900",
+            " ball: --size must be 1 to 20000 pixels each way; got '0x3'. Write for example 1200x900",
         ),
         (
             "ball --size 20001x3",
-            " ball: --size must be width x height in pixels, each 1 to 20000; got '20001x3'. "
-            "Write for example --size 1200x900",
+            " ball: --size must be 1 to 20000 pixels each way; got '20001x3'. Write for example 1200x900",
+        ),
+        *(
+            (
+                f"ball --size {size}",
+                " ball: --size must be width x height in pixels, such as 1200x900, or a width or both in "
+                f"cm, mm, in or pt, such as 8.5cm; got '{size}'",
+            )
+            for size in ("30", "axb", "nancm", "-3cm", "1e2cm", "8.5", "8.5cmx6", "3km", ".cm")
+        ),
+        *(
+            (
+                f"ball --size {size}",
+                f" ball: --size must be more than 0 and up to 200in; got '{size}'. Write for example 8.5cm",
+            )
+            for size in ("0cm", "0.0mmx5cm", "201in", "9cmx999cm")
+        ),
+        (
+            "ball --size 180cm",
+            " ball: --size must be 1 to 20000 pixels each way; got 180cm at 300 dots per inch, which is "
+            "21260 x 15945. Change --size or --dpi",
+        ),
+        (
+            "ball --size 0.1mm --dpi 72",
+            " ball: --size must be 1 to 20000 pixels each way; got 0.1mm at 72 dots per inch, which is "
+            "0 x 0. Change --size or --dpi",
+        ),
+        *(
+            (
+                f"ball --size 8.5cm --dpi {dpi}",
+                f" ball: --dpi must be dots per inch, 1 to 4800; got '{dpi}'. Write for example 300",
+            )
+            for dpi in ("0", "nan", "inf", "-300", "4801", "many")
+        ),
+        *(
+            (
+                f"ball --dpi 600{size}",
+                " ball: --dpi says how many pixels a length has, and no length is given. "
+                "Write for example --size 8.5cm --dpi 600",
+            )
+            for size in ("", " --size 64x48", " -o a.gif")
+        ),
+        *(
+            (
+                f"ball --size 640x480 -o a.{ending}",
+                f" ball: --size 640x480 is in pixels, but a .{ending} has none. "
+                "Write a length, for example --size 12cm",
+            )
+            for ending in ("svg", "pdf")
+        ),
+        (
+            "ball --theme night",
+            " ball: Invalid value for '--theme': 'night' is not one of 'book', 'dark', 'print'.",
+        ),
+        *(
+            (
+                f"ball {option} -o a.{ending}",
+                " ball: --seconds and --fps are for films. Write one of .gif, .apng or .mp4 with --output",
+            )
+            for option, ending in (("--seconds 2", "png"), ("--fps 30", "svg"))
+        ),
+        (
+            "ball --fps 0 -o a.gif",
+            " ball: --fps must be a number of pictures a second, more than 0 and up to 60; got '0'. "
+            "Write for example 30",
+        ),
+        (
+            "ball --seconds nan -o a.gif",
+            " ball: --seconds must be a number of seconds, more than 0 and up to 600; got 'nan'. "
+            "Write for example 4",
+        ),
+        (
+            "ball --seconds 600 --fps 60 -o a.mp4",
+            " ball: a film must have 2 to 3600 pictures; got 36000, 60 a second in 600 seconds. "
+            "Change --seconds or --fps",
+        ),
+        (
+            "ball --fps .1 -o a.apng",
+            " ball: a film must have 2 to 3600 pictures; got 0, 0.1 a second in 0.8 seconds. "
+            "Change --seconds or --fps",
         ),
         (
             f"ball --dent {'9' * 400}",
             f" ball: --dent must be a whole number, at least 0; got '{'9' * 60}...'. "
             "Write for example --dent 0",
         ),
-        ("ball --output=", " ball: --output '' is a folder. Write a file name, ending in .png or .gif"),
-        ("ball -o a.png/", " ball: --output a.png/ is a folder. Write a file name, ending in .png or .gif"),
+        (
+            "ball --output=",
+            " ball: --output '' is a folder. Write a file name, ending in " + _ENDINGS,
+        ),
+        (
+            "ball -o a.png/",
+            " ball: --output a.png/ is a folder. Write a file name, ending in " + _ENDINGS,
+        ),
         (
             f"ball -o {'a' * 300}.png",
             f" ball: --output {'a' * 300}.png: File name too long. Choose another name",
         ),
-        ("ball -o a.pdf", " ball: --output must end in .png or .gif; got 'a.pdf'"),
+        ("ball -o a.jpg", " ball: --output must end in .png, .svg, .pdf, .gif, .apng or .mp4; got 'a.jpg'"),
         ("ball -o no/a.png", " ball: --output no/a.png: there is no folder no. Make it first"),
         ("still -o a.gif", " still: still has no time to animate. Write a .png"),
         (
             "ball -o a.gif --turn 3",
             " ball: a .gif sweeps --turn, so it cannot be given too. Leave out --turn, or write a .png",
+        ),
+        (
+            "ball -o a.mp4 --turn 3",
+            " ball: a .mp4 sweeps --turn, so it cannot be given too. Leave out --turn, or write a .png",
         ),
     ],
 )
@@ -332,13 +477,166 @@ def test_a_gif_goes_round_without_flicker(folder: Path) -> None:
     assert frames[0].getpixel((16, 24)) == (255, 255, 255)
 
 
+def test_a_film_draws_every_moment_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[object] = []
+    monkeypatch.setattr(figure.Figure, "draw", _counting(drawn))
+    assert _run("ball", "--draft", "-o", "a.gif").exit_code == 0
+    assert drawn == [45.0 * k for k in range(8)]
+    drawn.clear()
+    assert json.loads(_run("ball", "--draft", "-o", "a.gif", "--json").stdout)["hue"] == "red"
+    assert drawn == [90.0, *(45.0 * k for k in range(8))]
+
+
+def _counting(drawn: list[object]) -> Callable[..., object]:
+    draw_ = figure.Figure.draw
+
+    def counted(self: figure.Figure, **params: object) -> object:
+        drawn.append(params["turn"])
+        return draw_(self, **params)
+
+    return counted
+
+
+def test_a_moving_png_goes_round_in_all_colours(folder: Path) -> None:
+    assert _run("ball", "--draft", "-o", "a.apng").stdout == "a.apng\n"
+    with Image.open(folder / "a.apng") as image:
+        assert image.format == "PNG" and image.info["loop"] == 0 and image.info["command"] == "ball"
+        assert image.info["Title"] == "Ball"
+        durations, frames = [], []
+        for frame in ImageSequence.Iterator(image):
+            durations.append(frame.info["duration"])
+            frames.append(frame.convert("RGB"))
+    # 0.8 seconds at 30 a second.
+    assert len(frames) == 24 and sum(durations) == 800.0
+    _run("ball", "--draft", "--turn", "0", "-o", "b.png")
+    with Image.open(folder / "b.png") as still:
+        assert frames[0].tobytes() == still.convert("RGB").tobytes() != frames[12].tobytes()
+
+
+def test_an_mp4_plays_everywhere(folder: Path) -> None:
+    import av
+
+    assert _run("ball", "--draft", "--size", "65x49", "--seconds", "0.5", "-o", "a.mp4").exit_code == 0
+    with av.open(str(folder / "a.mp4")) as film:
+        (stream,) = film.streams
+        assert isinstance(stream, av.VideoStream)
+        # Even numbers of pixels, for its colours have half as many.
+        assert (stream.width, stream.height, stream.pix_fmt) == (66, 50, "yuv420p")
+        assert stream.codec_context.name.startswith("h264") and stream.average_rate == 30
+        assert film.metadata["title"] == "Ball" and "command ball" in film.metadata["comment"]
+        frames = [frame.to_ndarray(format="rgb24") for frame in film.decode(video=0)]
+    assert len(frames) == 15
+    assert frames[0][1, 1].min() >= 254
+    red, green, _ = frames[0][25, 49]
+    assert red > 150 > green and frames[0][25, 17].min() > 240
+
+
+def test_an_mp4_without_an_encoder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("av", "av.codec"):
+        monkeypatch.setitem(sys.modules, name, None)
+    line = _refused(_run("ball", "-o", "a.mp4"))
+    assert line.startswith("lietool ball: a .mp4 needs PyAV with its encoder for H.264, which cannot be used")
+    assert line.endswith("Install it with: pip install av, or write a .gif or .apng")
+    assert list(folder.iterdir()) == []
+    with pytest.raises(video.NoEncoderError):
+        video.require()
+
+
+def test_a_length_and_its_dots_are_kept(folder: Path) -> None:
+    for size, dpi, pixels in (
+        ("8.5cm", None, (1004, 753)),
+        ("85mm", "300", (1004, 753)),
+        ("2in", "100", (200, 150)),
+        ("72pt", "96", (96, 72)),
+        ("4CMx1cm", "127", (200, 50)),
+    ):
+        arguments = ["--dpi", dpi] if dpi else []
+        assert _run("ball", "--draft", "--size", size, *arguments, "-o", "a.png").exit_code == 0
+        with Image.open(folder / "a.png") as image:
+            assert image.size == pixels
+            assert image.info["dpi"] == pytest.approx([float(dpi or 300)] * 2, abs=0.02)
+    _run("ball", "--draft", "-o", "a.png")
+    with Image.open(folder / "a.png") as image:
+        assert "dpi" not in image.info
+
+
+def test_vectors_have_the_length_asked_for(folder: Path) -> None:
+    for size, points in (((), (18.1417, 13.6063)), (("--size", "8.5cm"), (240.9449, 180.7087))):
+        for name in ("a.svg", "a.PDF"):
+            assert _run("ball", "--no-shaded", *size, "-o", name).exit_code == 0
+        text = (folder / "a.svg").read_text()
+        found = re.findall(r'width="([\d.]+)pt" height="([\d.]+)pt"', text)[0]
+        assert [float(side) for side in found] == pytest.approx(points, abs=1e-3)
+        assert "<image" not in text and "<title>" in text
+        found = re.findall(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", (folder / "a.PDF").read_bytes())[0]
+        assert [float(side) for side in found] == pytest.approx(points, abs=1e-3)
+
+
+def test_vectors_of_a_page_need_no_renderer(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def none(*_: object) -> None:
+        raise context.NoRendererError({"osmesa": "not there"})
+
+    monkeypatch.setattr(context, "get", none)
+    assert _run("ball", "--no-shaded", "-o", "a.pdf").exit_code == 0
+    assert _run("ball", "-o", "b.svg").exit_code == 4
+    assert [path.name for path in folder.iterdir()] == ["a.pdf"]
+
+
+def test_themes(folder: Path) -> None:
+    for name, look in theme.THEMES.items():
+        assert _run("still", "--draft", "--theme", name, "-o", "a.png").exit_code == 0
+        with Image.open(folder / "a.png") as image:
+            assert image.convert("RGB").getpixel((5, 5)) == tuple(look.srgb(style.PAPER).astype(int))
+        assert _run("still", "--theme", name, "-o", "a.svg").exit_code == 0
+        assert f"fill: {look.hex(style.PAPER)}" in (folder / "a.svg").read_text()
+
+
 def test_a_sweep_that_is_not_closed_goes_forth_and_back() -> None:
-    places = _picture.sweep(figure.Time("t", 1.0, 3.0, frames=6))
+    places = _film.sweep(figure.Time("t", 1.0, 3.0, frames=6))
     assert places[0] == 1.0
     assert max(places) == places[3] == 3.0
     assert places[1:3] == places[:3:-1]
-    closed = _picture.sweep(figure.Time("t", 0.0, 360.0, frames=4, closed=True))
+    closed = _film.sweep(figure.Time("t", 0.0, 360.0, frames=4, closed=True))
     assert closed == [0.0, 90.0, 180.0, 270.0]
+
+
+@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize(
+    ("ending", "pace"), [(".gif", (None, None)), (".mp4", (None, None)), (".apng", (1.7, 25.0))]
+)
+def test_a_loop_has_no_hitch(closed: bool, ending: str, pace: tuple[float | None, float | None]) -> None:
+    time = _film.paced(figure.Time("t", 0.0, 360.0, closed=closed), ending, _film.Pace(*pace))
+    places = _film.sweep(time)
+    count = len(places)
+    # Round the loop, past its end: how far it goes from frame to frame, and how suddenly that changes.
+    steps = [places[(k + 1) % count] - places[k] for k in range(count)]
+    if closed:
+        steps[-1] += 360.0
+        assert steps == pytest.approx([360.0 / count] * count)
+    else:
+        changes = [abs(steps[k] - steps[k - 1]) for k in range(count)]
+        assert max(changes) <= 180.0 * (2.0 * math.pi / count) ** 2
+        assert places[count // 2] == max(places) == 360.0
+
+
+@pytest.mark.parametrize(
+    ("ending", "pace", "frames", "seconds"),
+    [
+        (".gif", (None, None), 48, 4.0),
+        (".mp4", (None, None), 120, 4.0),
+        (".apng", (None, None), 120, 4.0),
+        (".gif", (2.0, None), 24, 2.0),
+        (".mp4", (2.0, None), 60, 2.0),
+        (".gif", (None, 25.0), 100, 4.0),
+        (".mp4", (1.0, 24.5), 24, 1.0),
+        (".apng", (0.5, 50.0), 26, 0.5),
+    ],
+)
+def test_the_pace_of_a_film(
+    ending: str, pace: tuple[float | None, float | None], frames: int, seconds: float
+) -> None:
+    found = _film.paced(figure.Time("t", 0.0, 1.0), ending, _film.Pace(*pace))
+    assert (found.frames, found.seconds) == (frames, seconds)
 
 
 def test_an_interruption_ends_with_130(folder: Path) -> None:

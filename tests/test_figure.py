@@ -59,6 +59,9 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+_PART = 'view: Annotated[Literal["a", "b"], Param("v")] = "a", x: Annotated[float, Param("x", only={})] = 1.0'
+
+
 def _tiny(
     parameters: str = "", arguments: str = 'plates={"A": Plate("T", (), "C.")}', doc: str = '"""D."""'
 ) -> str:
@@ -150,6 +153,9 @@ def test_a_malformed_vector_is_refused(project: Path, text: str) -> None:
     ("text", "message"),
     [
         (_tiny(doc="pass"), "tiny has no docstring"),
+        (_tiny(_PART.format('("view",)')), "parameter x: only must be another parameter and some of its"),
+        (_tiny(_PART.format('("view", "c")')), "choices; got ('view', 'c'). Correct it"),
+        (_tiny(_PART.format('("x", "a")')), "got ('x', 'a')"),
         (_tiny("a: float = 1.0"), "parameter a must be annotated"),
         (_tiny("a=1.0"), "parameter a must be annotated"),
         (_tiny('a: Annotated[float, Param("a")]'), "parameter a has no default"),

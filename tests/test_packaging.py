@@ -38,8 +38,8 @@ def site(tmp_path_factory):
     ("inside", "beside", "suffixes"),
     [
         ("figures", "figures", (".py",)),
-        ("goldens", "golden", (".png", ".json")),
-        (".", "lietool", (".py", ".frag")),
+        ("goldens", "golden", (".png", ".json", ".md")),
+        (".", "lietool", (".py", ".frag", ".toml", ".html", ".css", ".js")),
     ],
 )
 def test_every_file_is_in_it(site, inside, beside, suffixes):

@@ -285,17 +285,59 @@ def test_every_package_in_the_lock_has_hashes_and_none_a_place():
     assert "://" not in text and "--index" not in text
 
 
-@pytest.mark.parametrize(("lint", "test", "expected"), [(0, 0, 0), (1, 0, 1), (0, 5, 1)])
-def test_ci_fails_with_its_parts_and_wants_a_renderer(tmp_path, lint, test, expected):
+def system(tmp_path: Path, *missing: str) -> Path:
+    """A folder with the programs of the system that `./run` uses, and an apt-get that only notes."""
+    folder = tmp_path / "system"
+    folder.mkdir()
+    for name in ("sh", "env", "id", "readlink", "dirname", "basename", "cat", "grep", "tail", "rm"):
+        (folder / name).symlink_to(shutil.which(name) or f"/usr/bin/{name}")
+    scripts = {
+        "sudo": 'shift; exec "$@"',
+        "apt-get": 'echo "$*" >>"$NOTES"; exit "${APT_STATUS-0}"',
+        "chromium": "",
+        "chromedriver": "",
+    }
+    for name in scripts.keys() - set(missing):
+        (folder / name).write_text(f"#!/bin/sh\n{scripts[name]}\n")
+        (folder / name).chmod(0o755)
+    return folder
+
+
+class TestBrowser:
+    def test_one_that_is_there_is_left_alone(self, clone, tmp_path):
+        assert clone.run("browser", PATH=str(system(tmp_path))) == (0, "", "") and clone.asked() == []
+
+    @pytest.mark.parametrize("missing", ["chromium", "chromedriver"])
+    def test_one_that_is_not_is_installed_with_its_driver(self, clone, tmp_path, missing):
+        status, _, err = clone.run("browser", PATH=str(system(tmp_path, missing)))
+        (asked,) = clone.notes.read_text().splitlines()
+        assert status == 0 and "installing Chromium" in err
+        assert asked.endswith("install -y --no-install-recommends chromium chromium-driver")
+        assert not (clone.root / ".venv").exists() and not (clone.root / ".venv.log").exists()
+
+    def test_a_failure_is_one_of_the_command(self, clone, tmp_path):
+        status, _, err = clone.run("browser", PATH=str(system(tmp_path, "chromium")), APT_STATUS="1")
+        assert status == 1 and "apt-get could not install it" in err
+
+    def test_where_there_is_no_apt_it_says_what_is_wanted(self, clone, tmp_path):
+        status, _, err = clone.run("browser", PATH=str(system(tmp_path, "chromium", "apt-get")))
+        assert status == 1 and "apt-get install chromium chromium-driver" in err
+
+
+@pytest.mark.parametrize(
+    ("lint", "test", "browser", "expected"), [(0, 0, 0, 0), (1, 0, 0, 1), (0, 5, 0, 1), (0, 0, 1, 1)]
+)
+def test_ci_fails_with_its_parts_and_wants_a_renderer_and_a_browser(tmp_path, lint, test, browser, expected):
     (tmp_path / ".ci").mkdir()
     shutil.copy(ROOT / ".ci" / "run", tmp_path / ".ci" / "run")
     stand_in = tmp_path / "run"
     stand_in.write_text(
-        f'#!/bin/sh\necho "$1 $LIETOOL_REQUIRE_RENDERER"\n[ "$1" = lint ] && exit {lint}\nexit {test}\n'
+        '#!/bin/sh\necho "$1 $LIETOOL_REQUIRE_RENDERER $LIETOOL_REQUIRE_BROWSER"\n'
+        f'[ "$1" = browser ] && exit {browser}\n[ "$1" = lint ] && exit {lint}\nexit {test}\n'
     )
     stand_in.chmod(0o755)
     done = subprocess.run(["bash", tmp_path / ".ci" / "run"], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (expected, "lint 1\ntest 1\n")
+    assert (done.returncode, done.stdout) == (expected, "browser 1 1\nlint 1 1\ntest 1 1\n")
 
 
 def test_scripts_can_be_executed():

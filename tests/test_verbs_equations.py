@@ -77,7 +77,7 @@ def test_functions_tests_and_plates_are_where_the_index_says():
             for place in getattr(equation, kind):
                 line = (ROOT / place.file).read_text().splitlines()[place.line - 1]
                 assert re.match(rf"\s*(def|class) {place.name.rpartition('.')[2]}\b", line), place
-    assert [place.name for place in BY_NUMBER["B 2.34"].plates] == ["B2.8"]
+    assert "B2.8" in [place.name for place in BY_NUMBER["B 2.34"].plates]
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,7 @@ class Studio(_studio.Studio):
         if self.trouble == "nothing":
             raise _studio.Stop(4, "no OpenGL renderer")
 
-    def paint(self, item, *, size=None, draft=False):
+    def paint(self, item, *, size=None, draft=False, theme="book"):
         image = np.random.default_rng(len(item.id)).integers(0, 256, (40, 60, 3)).astype(np.uint8)
         if self.change:
             image = self.change(image)
@@ -172,10 +172,22 @@ def test_build_makes_pictures_and_reports_without_judging(run, accepted, studio,
     assert files(accepted) == before
 
 
-@pytest.mark.parametrize("option", ["--draft", "--size 30x20"])
-def test_a_draft_or_another_size_is_not_compared(run, accepted, option):
+@pytest.mark.parametrize("option", ["--draft", "--size 30x20", "--size 3cm --dpi 72", "--theme dark"])
+def test_a_draft_another_size_or_theme_is_not_compared(run, accepted, option):
     rows = json.loads(run(f"build {option} --json"))
     assert {row["verdict"] for row in rows} == {"not compared"}
+
+
+def test_build_asks_for_the_look_that_was_asked_for(run, studio, tmp_path, monkeypatch):
+    seen = []
+    paint = studio.paint
+    monkeypatch.setattr(studio, "paint", lambda item, **look: seen.append(look) or paint(item, **look))
+    run("build T1 --theme print --size 85mm --dpi 200")
+    (look,) = seen
+    assert (look["theme"], look["draft"], look["size"].pixels((1200, 900))) == ("print", False, (669, 502))
+    with Image.open(tmp_path / "out" / "T1.png") as image:
+        assert image.info["dpi"] == pytest.approx((200, 200), abs=0.02)
+    assert "no length is given" in run("build --dpi 200", 2)
 
 
 @pytest.mark.parametrize("size", ["30", "0x20", "30x-1", "axb"])

@@ -4,15 +4,19 @@ import numpy as np
 
 from lietool.figure import Drawing
 from lietool.lie import so3
-from lietool.render import scene, style
+from lietool.render import scene, solids, style
 from lietool.render.camera import Camera
 from lietool.render.globe import globe, joined, jumps
-from lietool.render.marks import coordinate_axes
+from lietool.render.marks import coordinate_axes, curved_arrow
 from lietool.render.plot import Axes, number
+
+from . import _heads
 
 FULL = 2.0 * np.pi
 # A full turn about x and one about y: where the paths end.
 LAST = 2.0 * FULL
+# Where the second turn begins.
+_AT = r"$360^{\circ}$"
 
 
 def drawing(turn: float, aside: float) -> Drawing:
@@ -29,14 +33,16 @@ def drawing(turn: float, aside: float) -> Drawing:
     x = np.linspace(0.0, 3.0 * FULL, 601)
     jacobian = so3.left_jacobian(np.stack([x, 0.0 * x, 0.0 * x], axis=-1))
     smallest = np.linalg.svd(jacobian, compute_uv=False).min(axis=-1)
-    camera = Camera((1.0, 0.50, 0.42), (0.0, 0.0, 0.0), 3.1)
+    camera = Camera((0.68, -0.80, 0.40), (0.0, 0.0, 0.06), 2.9)
+    # Where the second turn begins, once it has.
+    corner = int(np.searchsorted(steps[:shown], FULL - 1e-9))
     views = [
-        scene.View(tuple(_lift_view(lift / FULL, camera, i)), camera, (600.0 * i, 318.0, 600.0, 500.0))
+        scene.View(tuple(_lift_view(lift / FULL, corner, camera)), camera, (600.0 * i, 300.0, 600.0, 530.0))
         for i, lift in enumerate(lifts)
     ]
-    titles = ("through the identity", "beside the identity")
+    titles = ("log of a path through $I$", "log of a path beside $I$")
     page: list[scene.Record] = [
-        scene.Label(text, (300.0 + 600.0 * i, 856.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
+        scene.Label(text, (300.0 + 600.0 * i, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
         for i, text in enumerate(titles)
     ]
     page += _smallest(x, smallest, lengths)
@@ -59,32 +65,73 @@ def _motion(turn: np.ndarray) -> np.ndarray:
     return so3.rotation("y", then) @ so3.rotation("x", first)
 
 
-def _lift_view(lift: np.ndarray, camera: Camera, which: int) -> list[scene.Record]:
+def _lift_view(lift: np.ndarray, corner: int, camera: Camera) -> list[scene.Record]:
     breaks = jumps(lift)
-    color = (style.WRONG, style.RIGHT)[which]
+    color = style.ALGEBRA
     names = ("$x_1$", "$x_2$", "$x_3$")
-    records = [*globe(camera, alpha=0.75), *coordinate_axes(camera, names, 1.42)]
+    records = [*globe(camera, alpha=0.75), *coordinate_axes(camera, names, 1.3)]
     records.append(
         scene.Lines(joined(-np.stack([0.0 * a, a]) for a in np.eye(3)), style.INK, style.THIN, 0.45)
     )
-    corner = (camera.axes[0] + camera.axes[1]) / np.sqrt(2.0)
+    side = (camera.axes[0] + camera.axes[1]) / np.sqrt(2.0)
     records.append(
-        scene.Label(r"$|x| = 2\pi$", corner, style.GLASS_EDGE, style.SMALL_TEXT, (20.0, 0.0), "lc")
+        scene.Label(r"$|\mathbf{x}| = 2\pi$", side, style.GLASS_EDGE, style.SMALL_TEXT, (16.0, 10.0), "lc")
     )
-    records += [scene.Tube(piece, color, 0.018) for piece in np.split(lift, breaks)]
+    pieces = np.split(lift, breaks)
+    records += [scene.Tube(piece, color, 0.018) for piece in pieces]
+    for k in range(2):
+        middle = int(0.45 * corner) if k == 0 else (corner + len(lift)) // 2
+        if middle > 2 and (k == 0 or corner < len(lift) - 8):
+            records += _heads.head(lift, middle, color, 0.018)
+    if not len(breaks):
+        records += _shadow(lift, corner)
+        if corner < len(lift):
+            records += _turn(lift[corner], camera)
     for jump in breaks:
-        start, end = lift[jump - 1], lift[jump]
-        # Drawn as a bow below, since straight back it would lie under the path.
-        s = np.linspace(0.0, 1.0, 41)[:, None]
-        bow = (1.0 - s) * start + s * end - 1.5 * s * (1.0 - s) * camera.axes[1]
-        records += [
-            scene.Lines(bow, color, 2.6, dash=(7.0, 6.0), lift=0.5),
-            scene.Points([start], style.PAPER, 9.0, rim=color),
-            scene.Label(_jump_name(start, end), bow[20], color, style.SMALL_TEXT, (14.0, -8.0), "lt"),
-        ]
+        records += _jump(lift[jump - 1], lift[jump], camera)
     records.append(scene.Points(lift[[0]], color, 8.0))
     records.append(scene.Points(lift[[-1]], color, 11.0, rim=style.PAPER))
     return records
+
+
+def _turn(point: np.ndarray, camera: Camera) -> list[scene.Record]:
+    """Where the second turn begins."""
+    return [
+        scene.Points([point], style.ALGEBRA, 7.0),
+        scene.Label(_AT, point, style.ALGEBRA_TEXT, style.SMALL_TEXT, (0.0, -26.0), "ct", room=40.0),
+    ]
+
+
+def _shadow(lift: np.ndarray, corner: int) -> list[scene.Record]:
+    """The shadow on the plane of the first two axes, and the wall between it and the path."""
+    flat = lift * (1.0, 1.0, 0.0)
+    ends = [lift[-1]] if corner >= len(lift) else [lift[corner], lift[-1]]
+    drops = joined(np.stack([point, point * (1.0, 1.0, 0.0)]) for point in ends)
+    records: list[scene.Record] = [
+        scene.Lines(flat, style.MUTED, style.EDGE, 0.8),
+        scene.Lines(drops, style.MUTED, style.HAIR),
+    ]
+    if len(lift) > 1:
+        vertices, faces, _ = solids.grid(np.stack([lift, flat]))
+        records.append(scene.Surface(vertices, faces, style.ALGEBRA, material="flat", alpha=0.13))
+    return records
+
+
+def _jump(start: np.ndarray, end: np.ndarray, camera: Camera) -> list[scene.Record]:
+    """The way back that no rotation takes, as a bow: straight, it would lie under the path."""
+    s = np.linspace(0.0, 1.0, 41)[:, None]
+    down = camera.axes[1]
+    bow = (1.0 - s) * start + s * end - 1.5 * s * (1.0 - s) * down
+    # Straight below the middle of the bow, where the sphere ends.
+    across = float(camera.axes[0] @ bow[20])
+    outside = across * camera.axes[0] - np.sqrt(max(1.25 - across**2, 0.5)) * down
+    return [
+        *curved_arrow(bow, style.WRONG, 0.010, 3.4),
+        scene.Lines(np.stack([bow[20], outside]), style.WRONG, style.HAIR, lift=0.5),
+        scene.Points([start], style.PAPER, 9.0, rim=style.WRONG),
+        scene.Label(_AT, start, style.WRONG, style.SMALL_TEXT, (12.0, 20.0), "lb", room=40.0),
+        scene.Label(_jump_name(start, end), outside, style.WRONG, style.SMALL_TEXT, (0.0, -6.0), "ct"),
+    ]
 
 
 def _jump_name(start: np.ndarray, end: np.ndarray) -> str:
@@ -92,15 +139,39 @@ def _jump_name(start: np.ndarray, end: np.ndarray) -> str:
 
 
 def _smallest(x: np.ndarray, values: np.ndarray, marked: np.ndarray) -> list[scene.Record]:
-    axes = Axes((150.0, 90.0, 900.0, 180.0), (0.0, 3.0 * FULL), (0.0, 1.1))
-    ticks = [(FULL * n, rf"${2 * n}\pi$" if n else "$0$") for n in range(4)]
-    records = axes.frame(
-        ticks, [(0.0, "$0$"), (1.0, "$1$")], "$|x|$", r"smallest singular value of $d\exp_x$"
+    axes = Axes((150.0, 86.0, 900.0, 150.0), (0.0, 3.0 * FULL), (0.0, 1.05))
+    # The sphere's own colour at its radius.
+    full = [(FULL * n, rf"${2 * n}\pi$") for n in range(1, 4)]
+    ticks = [(0.0, "$0$"), *((at, "" if n == 0 else text) for n, (at, text) in enumerate(full))]
+    records = axes.frame(ticks, [(0.0, "$0$"), (1.0, "$1$")], r"$|\mathbf{x}|$")
+    records.append(
+        scene.Label(
+            r"smallest singular value of $d\,\exp_{\mathbf{x}}$",
+            (600.0, 266.0, 0.0),
+            style.INK,
+            style.TITLE_TEXT,
+            anchor="cn",
+        )
     )
-    records.append(axes.area(x, values, style.INK, 0.07))
     records.append(axes.curve(x, values, style.INK))
-    records.append(axes.dots(FULL * np.arange(1, 4), 0.0, style.INK))
-    for length, color in zip(marked, (style.WRONG, style.RIGHT), strict=True):
-        hollow = color == style.RIGHT
-        records.append(axes.dots(length, np.interp(length, x, values), color, 10.0, hollow=hollow))
+    records.append(axes.dots(FULL * np.arange(2, 4), 0.0, style.INK))
+    records.append(axes.dots(FULL, 0.0, style.GLASS_EDGE, 9.0))
+    at = axes.at(FULL, 0.0)
+    records.append(
+        scene.Label(full[0][1], at, style.GLASS_EDGE, style.SMALL_TEXT, (0.0, -14.0), "ct", halo=False)
+    )
+    for length, name in zip(marked, ("through", "beside"), strict=True):
+        value = np.interp(length, x, values)
+        records.append(axes.dots(length, value, style.ALGEBRA, 10.0))
+        records.append(
+            scene.Label(
+                name,
+                axes.at(length, value),
+                style.ALGEBRA_TEXT,
+                style.SMALL_TEXT,
+                (14.0, 6.0),
+                "lb",
+                room=60.0,
+            )
+        )
     return records

@@ -10,8 +10,9 @@ from lietool.lie import quaternion, so3
 from lietool.render import scene, solids, style
 from lietool.render.camera import Camera
 from lietool.render.globe import joined, jumps
+from lietool.render.theme import Color
 
-from . import _exp_paths
+from . import _exp_paths, _heads
 
 FULL = 2.0 * np.pi
 
@@ -22,20 +23,24 @@ FULL = 2.0 * np.pi
             title="The exponential map of SO(3) in four stages",
             equations=("4.27", "4.28", "4.29", "4.30"),
             caption=(
-                "One dimension lower than life. (a) Rotation vectors x, cut into shells by the spheres "
-                "|x| = 2n pi. (b) Each of those spheres collapses to a point, and every shell becomes a "
-                "sphere of unit quaternions. (c) The spheres are laid onto one, S^3. (d) Opposite points are "
-                "the same rotation. The marked x moves outwards; follow it through the stages."
+                "One dimension lower than life: slices of R^3 and S^3. (a) Rotation vectors x, cut into "
+                "shells by the spheres |x| = 2n pi. (b) Each of those spheres collapses to a point, 1 or -1, "
+                "and every shell becomes a sphere of unit quaternions q. (c) The spheres are laid onto one, "
+                "S^3; its near half is cut away, and where the way runs on that it is a thin line. (d) "
+                "Opposite points are the same rotation R. The marked x moves outwards; follow it through "
+                "the stages. The heads on its way in (d) count how often each half has been gone."
             ),
         ),
         "B4.2b": Plate(
             title="A path through the identity whose logarithm, begun at 0, must jump; and one beside it",
             equations=("4.25", "4.27", "4.30"),
             caption=(
-                "Left: a full turn about x, then a turn about y. The path turns off at I, and no logarithm "
-                "of it that begins at 0 is continuous. Right: the same path moved aside by a small rotation "
-                "avoids I, and its logarithm runs round inside the sphere |x| = 2 pi. Below: the smallest "
-                "singular value of d exp, zero at every |x| = 2n pi; the dots are the paths now."
+                "Left: a full turn about the first axis, then a turn about the second. At 360 degrees the "
+                "path passes I and turns off, and no logarithm of it that begins at 0 is continuous. Right: "
+                "the same path moved aside by a small rotation avoids I, and its logarithm runs round inside "
+                "the sphere |x| = 2 pi (below it its shadow on the plane of the first two axes). Below: the "
+                "smallest singular value of d exp, zero at every |x| = 2n pi; the dots are where the "
+                "logarithms are now."
             ),
             params={"view": "paths", "turn": 450.0},
         ),
@@ -49,13 +54,20 @@ def exp_singularity(
     ] = 500.0,
     azimuth: Annotated[
         float,
-        Param("direction of the marked rotation vector in the plane of the stages", "deg", -360.0, 360.0),
+        Param(
+            "direction of the marked rotation vector in its plane",
+            "deg",
+            -360.0,
+            360.0,
+            only=("view", "stages"),
+        ),
     ] = -50.0,
     shells: Annotated[
-        int, Param("number of shells in the stages; a longer turn brings more", low=1, high=3)
+        int, Param("number of shells; a longer turn brings more", low=1, high=3, only=("view", "stages"))
     ] = 3,
     aside: Annotated[
-        float, Param("rotation about z that moves the second path off I", "deg", 1.0, 60.0)
+        float,
+        Param("rotation about z that moves the second path off I", "deg", 1.0, 60.0, only=("view", "paths")),
     ] = 20.0,
 ) -> Drawing:
     """The exponential map of SO(3) folds space: at |x| = 2n pi a whole sphere goes to the identity.
@@ -74,6 +86,9 @@ def exp_singularity(
     shells = max(shells, int(np.ceil(turn / 360.0)))
     return _stages(_polar(np.deg2rad(turn), np.deg2rad(azimuth)), shells)
 
+
+# In grey the pale orange and the pale green are one; on a disc they lie side by side.
+_FILLS = (*style.SHELL_FILLS[:2], style.ramp([0.45], (style.SHELL_FILLS[2], style.SHELLS[2])))
 
 # Rotation vectors lie in the plane z = 0; the real part of a quaternion is drawn along x, 1 at the left.
 
@@ -125,7 +140,9 @@ def _graticule(n: int) -> list[np.ndarray]:
     return circles + [_polar(along, k * np.pi / 6.0) for k in range(12)]
 
 
-def _surface(points: np.ndarray, color: str, material: Literal["matte", "glass"] = "matte") -> scene.Surface:
+def _surface(
+    points: np.ndarray, color: Color, material: Literal["matte", "glass"] = "matte"
+) -> scene.Surface:
     vertices, faces, normals = solids.grid(points)
     return scene.Surface(vertices, faces, color, normals, material)
 
@@ -135,7 +152,7 @@ def _marked(trail: np.ndarray, name: str, offset: tuple[float, float], radius: f
     return [
         *(scene.Tube(piece, style.MARK, radius) for piece in np.split(trail, jumps(trail))),
         scene.Points(trail[-1:], style.MARK, 10.0, rim=style.PAPER),
-        scene.Label(name, trail[-1], style.MARK, style.TEXT, offset),
+        scene.Label(name, trail[-1], style.MARK, style.TEXT, offset, room=40.0),
     ]
 
 
@@ -143,12 +160,12 @@ def _stages(x: np.ndarray, shells: int) -> Drawing:
     trail = np.linspace(0.0, 1.0, 301)[:, None] * x
     direction = (0.16, -1.0, 0.45)
     plane = Camera((0.0, -1.0, 0.95), (0.0, -0.04, 0.0), 1.78)
-    chain = Camera((0.0, -1.0, 0.45), (shells - 1.0, 0.0, 0.0), max(1.72 * shells, 2.9))
+    chain = Camera((0.0, -1.0, 0.45), (shells - 1.0, 0.0, 0.0), max(1.72 * shells, 3.8))
     sphere = Camera(direction, (0.0, 0.0, 0.0), 2.95)
     half = Camera((0.62, -1.0, 0.45), (-0.36, 0.0, 0.0), 2.6)
     panels = (
         ((0.0, 455.0, 600.0, 385.0), plane, _disc(trail, shells)),
-        ((600.0, 455.0, 600.0, 385.0), chain, _beads(trail, shells, chain)),
+        ((600.0, 475.0, 600.0, 385.0), chain, _beads(trail, shells, chain)),
         ((600.0, 5.0, 600.0, 385.0), sphere, _layers(trail, shells, sphere)),
         ((0.0, 5.0, 600.0, 385.0), half, _half(trail, float(np.arctan2(x[1], x[0])), half)),
     )
@@ -167,15 +184,15 @@ def _disc(trail: np.ndarray, shells: int) -> list[scene.Record]:
     around = np.linspace(0.0, FULL, 181)
     records: list[scene.Record] = []
     for n in range(shells):
-        records.append(_surface(_grid(n) / (FULL * shells), style.SHELL_FILLS[n]))
+        records.append(_surface(_grid(n) / (FULL * shells), _FILLS[n]))
         lines = joined(g / (FULL * shells) for g in _graticule(n))
         records.append(scene.Lines(lines, style.INK, style.HAIR, 0.3))
         rim = _polar(FULL * (n + 1.0), around)
-        records.append(scene.Lines(rim / (FULL * shells), style.INK, 3.4, lift=0.02))
+        records.append(scene.Lines(rim / (FULL * shells), style.INK, style.CURVE, lift=0.02))
         at = _polar(FULL * (n + 1.0), np.deg2rad(75.0)) / (FULL * shells)
         records.append(scene.Label(rf"${2 * (n + 1)}\pi$", at, style.INK, style.SMALL_TEXT, (8.0, 20.0)))
     records.append(scene.Points([(0.0, 0.0, 0.0)], style.INK, 6.0))
-    return records + _marked(trail / (FULL * shells), "$x$", (24.0, 0.0), 0.010)
+    return records + _marked(trail / (FULL * shells), r"$\mathbf{x}$", (24.0, 0.0), 0.010)
 
 
 def _beads(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record]:
@@ -197,7 +214,7 @@ def _beads(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record]
         offset = (-24.0, 0.0) if n == 0 else (30.0, 0.0) if n == shells else (0.0, 66.0)
         records.append(scene.Label(name, pole, style.INK, style.SMALL_TEXT, offset))
     carried = _to_chain(trail, _shell(trail, shells))
-    return records + _marked(carried, "$x$", (0.0, -30.0), 0.03)
+    return records + _marked(carried, "$q$", (0.0, -30.0), 0.03)
 
 
 def _layers(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record]:
@@ -226,7 +243,7 @@ def _layers(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record
     # On the near half, which is cut away, the way of the marked point hangs in the air.
     way = _to_sphere(trail)
     near = np.where((way @ camera.axes[2] > 0.0)[:, None], way, np.nan)
-    records.append(scene.Lines(near, style.MARK, style.CURVE, dash=(3.0, 7.0)))
+    records.append(scene.Lines(near, style.MARK, style.THIN))
     far = way[way @ camera.axes[2] <= 0.0]
     records += [scene.Tube(piece, style.MARK, 0.016) for piece in np.split(far, jumps(far)) if len(piece)]
     return records + _marked(way[-1:], "$q$", _aside(way[-1], camera), 0.016)
@@ -241,17 +258,30 @@ def _half(trail: np.ndarray, azimuth: float, camera: Camera) -> list[scene.Recor
     records: list[scene.Record] = [
         _surface(_to_sphere(grid), style.GLASS, "glass"),
         scene.Lines(joined(lines), style.GLASS_EDGE, style.HAIR, 0.6),
-        scene.Lines(rim, style.INK, 3.0),
+        scene.Lines(rim, style.INK, style.CURVE),
         scene.Points([(-1.0, 0.0, 0.0)], style.INK, 7.0),
         scene.Label("$I$", (-1.0, 0.0, 0.0), style.INK, style.TEXT, (-46.0, -4.0)),
     ]
     # Opposite points of the rim are one half turn; the pair in the mark's colour is where R goes on.
-    for aside, color in ((0.0, style.MARK), (np.pi / 3.0, style.GREYS[0]), (-np.pi / 3.0, style.GREYS[1])):
+    for aside, color in ((0.0, style.MARK), (np.pi / 3.0, style.GREYS[1]), (-np.pi / 3.0, style.GREYS[1])):
         pair = _to_sphere(_polar([np.pi, -np.pi], azimuth + aside))
-        records.append(scene.Lines(pair, color, style.THIN, dash=(6.0, 6.0)))
+        records.append(scene.Lines(pair, color, style.THIN))
         records.append(scene.Points(pair, color, 8.0))
     way = _to_rotations(trail)
+    records += _passes(way, np.linalg.norm(trail, axis=-1))
     return records + _marked(way, "$R$", _aside(way[-1], camera), 0.016)
+
+
+def _passes(way: np.ndarray, turned: np.ndarray) -> list[scene.Record]:
+    """A head for each half turn that is gone; on one and the same leg one behind the other."""
+    records: list[scene.Record] = []
+    for half in range(int(turned[-1] / np.pi + 1.0)):
+        # Every second half turn goes along the same leg again.
+        wanted = np.pi * (half + 0.4 + 0.16 * (half // 2))
+        at = int(np.searchsorted(turned, wanted))
+        if at < len(way) - 1:
+            records += _heads.head(way, at, style.MARK, 0.016)
+    return records
 
 
 def _aside(point: np.ndarray, camera: Camera) -> tuple[float, float]:
@@ -260,15 +290,22 @@ def _aside(point: np.ndarray, camera: Camera) -> tuple[float, float]:
 
 
 def _captions() -> list[scene.Record]:
-    texts = (
-        (300.0, 872.0, r"(a)  rotation vectors $x \in \mathrm{\mathbb{R}}^3$"),
-        (900.0, 872.0, r"(b)  $|x| = 2n\pi$ becomes a point"),
-        (900.0, 392.0, r"(c)  $q = \exp(x/2) \in S^3$"),
-        (300.0, 392.0, r"(d)  $q$ and $-q$ are one $R \in SO(3)$"),
+    titles = (
+        (300.0, 846.0, r"(a)  $\mathbf{x} \in \mathrm{\mathbb{R}}^3$, a slice"),
+        (900.0, 846.0, r"(b)  $|\mathbf{x}| = 2n\pi$ becomes a point"),
+        (900.0, 376.0, r"(c)  $q = \exp(\mathbf{x}/2) \in S^3$, a slice"),
+        (300.0, 376.0, r"(d)  $q$ and $-q$ are one $R \in \mathrm{SO}(3)$"),
     )
-    arrows = (((570, 650), (630, 650)), ((900, 484), (900, 424)), ((630, 190), (570, 190)))
+    maps = (
+        ((534, 658), (622, 658), "(4.30)", (0.0, 28.0), "cc"),
+        ((900, 514), (900, 426), "(4.29)", (22.0, 0.0), "lc"),
+        ((634, 190), (546, 190), r"$2 : 1$", (0.0, 28.0), "cc"),
+    )
     records: list[scene.Record] = [
-        scene.Label(text, (x, y - 14.0, 0.0), style.INK, style.SMALL_TEXT, anchor="cn")
-        for x, y, text in texts
+        scene.Label(text, (x, y, 0.0), style.INK, style.TITLE_TEXT, anchor="cn") for x, y, text in titles
     ]
-    return records + [scene.Arrow((*a, 0.0), (*b, 0.0), style.INK, 2.0, 4.0) for a, b in arrows]
+    for start, end, text, offset, anchor in maps:
+        middle = (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]), 0.0)
+        records.append(scene.Arrow((*start, 0.0), (*end, 0.0), style.INK, 2.0, 4.0))
+        records.append(scene.Label(text, middle, style.INK, style.SMALL_TEXT, offset, anchor))
+    return records

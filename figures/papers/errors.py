@@ -9,17 +9,29 @@ from lietool.bench import methods, printed
 from lietool.figure import Drawing, Param, Plate, figure
 from lietool.lie import affine, so3
 from lietool.render import scene, style
+from lietool.render.plot import Axes
+
+from . import _marks
 
 CONDITIONS = tuple(range(1, 12, 2))
 """Decades."""
-EDGES = (-13, -11, -9, -7, -5)
-"""Of the decades of errors; rounding on another processor moves no error over one of them."""
-
-_FEW = 6
+FEW = 20
 """Matrices for what takes them one after the other."""
-_COLORS = {"ours": style.RIGHT, "Newton": style.GREYS[0], "Higham": style.GREYS[0]}
-_COLORS |= {"diagonal": style.GREYS[1], "as printed": style.WRONG}
-_TEXTS = {"ours": style.ALGEBRA_TEXT, "as printed": style.AXES_TEXT[0]}
+
+_MARKS: Mapping[str, _marks.Mark] = {
+    "ours": _marks.disc(style.RIGHT),
+    "Higham": _marks.polygon(4, style.GREYS[0], np.pi / 4.0),
+    "diagonal": _marks.polygon(3, style.GREYS[1]),
+    "Newton": _marks.polygon(4, style.GREYS[0]),
+    "as printed": _marks.cross(style.WRONG),
+}
+_WORDS = {"ours": 52.0, "Higham": 102.0, "diagonal": 109.0, "Newton": 100.0, "as printed": 131.0}
+_BOXES = ((124.0, 204.0, 450.0, 600.0), (706.0, 204.0, 450.0, 600.0))
+_LOWEST, _HIGHEST = -17.0, 1.4
+# What is smaller, such as 0, counts as this power of ten.
+_LEAST = -16
+# Of marks side by side, where several methods have the same decade.
+_APART = 18.0
 
 _Way = Callable[[np.ndarray], np.ndarray]
 
@@ -33,48 +45,46 @@ _Way = Callable[[np.ndarray], np.ndarray]
                 "Left: exp(log S) against S, for random positive definite S of growing condition number, by "
                 "this library, by Higham's algorithm, by diagonalisation, and by (6) and (7) as printed. "
                 "Right: phi(psi(A)) against A, with the polar decomposition by one-sided Jacobi (ours), by "
-                "Newton's iteration, and by the square root of A^T A as printed. Each dot is the largest "
-                "relative error of many matrices, by the band of two decades that it lies in; lost means "
-                "an error above 10^-5, or no number at all."
+                "Newton's iteration, and by the square root of A^T A as printed. Each mark is the root mean "
+                "square of the relative errors of 1000 matrices (20 for Higham's algorithm, which takes them "
+                "one by one), rounded to a power of ten; marks side by side are equal. An error above 1, or "
+                "no number at all, counts as 1. The table with the times, on any machine: lietool bench "
+                "table1."
             ),
         )
     }
 )
 def errors(
-    matrices: Annotated[int, Param("random matrices of each condition number", "", 10, 20000)] = 100,
+    matrices: Annotated[int, Param("random matrices of each condition number", "", 10, 20000)] = 1000,
     seed: Annotated[int, Param("which random matrices", "", 0, 1000)] = 1,
 ) -> Drawing:
     """The errors of round trips over the condition number: ours, others', and the printed formulas'.
 
-    What to look for: our dots stay in the lowest band whatever the condition
-    number. The printed formulas lose as many digits as it has on the left,
-    where they subtract, and twice as many on the right, where they also form
-    A^T A; Newton's iteration loses half as many.
+    What to look for: ours stay at rounding whatever the condition number, and
+    so do Higham's algorithm and diagonalisation. The printed formulas lose as
+    many digits as it has on the left, where they subtract, and all of them
+    soon on the right, where they also form A^T A; Newton's iteration loses
+    half as many.
     """
     rng = np.random.default_rng(seed)
-    left = _symmetric(rng, matrices)
-    right = _affine(rng, matrices)
+    found = (_symmetric(rng, matrices), _affine(rng, matrices))
+    decades = [{name: decade(row) for name, row in rows.items()} for rows in found]
     records = [
-        *_panel(0, r"largest error of $\exp(\log S)$", left),
-        *_panel(1, r"largest error of $\varphi(\psi(A))$", right),
-        *_axis(),
+        *_panel(0, r"error of $\exp(\log S)$", "condition number of $S$", decades[0]),
+        *_panel(1, r"error of $\varphi(\psi(A))$", "condition number of $A$", decades[1]),
+        *_marks.legend([(_MARKS[name], _marks.RADIUS, name, _WORDS[name]) for name in _MARKS], 56.0),
     ]
     numbers = {
         "condition_decades": np.array(CONDITIONS),
-        "log_error_at_most": {name: [_text(e) for e in row] for name, row in left.items()},
-        "psi_error_at_most": {name: [_text(e) for e in row] for name, row in right.items()},
+        "log_error_decade": decades[0],
+        "psi_error_decade": decades[1],
     }
     return Drawing(scene.Picture((scene.View(tuple(records)),)), numbers)
 
 
-def level(error: float) -> int:
-    """Return in which band an error lies: 0 below the lowest edge, and one more for each edge it passes."""
-    return len(EDGES) if np.isnan(error) else sum(error > 10.0**edge for edge in EDGES)
-
-
-def _text(error: float) -> str:
-    band = level(error)
-    return f"1e{EDGES[band]}" if band < len(EDGES) else "lost"
+def decade(errors: np.ndarray) -> np.ndarray:
+    """Return the nearest powers of ten of errors, in which rounding on another processor changes nothing."""
+    return np.rint(np.log10(np.maximum(errors, 10.0**_LEAST))).astype(int)
 
 
 def _spectra(rng: np.random.Generator, count: int) -> np.ndarray:
@@ -89,7 +99,7 @@ def _rotations(rng: np.random.Generator, count: int) -> np.ndarray:
 
 
 def _symmetric(rng: np.random.Generator, count: int) -> dict[str, np.ndarray]:
-    """Return the largest error of exp(log S) by method and condition number."""
+    """Return the error of exp(log S) by method and condition number."""
     U = _rotations(rng, count)
     S = (U * _spectra(rng, count)[..., None, :]) @ np.swapaxes(U, -1, -2)
     S = 0.5 * (S + np.swapaxes(S, -1, -2))
@@ -97,13 +107,13 @@ def _symmetric(rng: np.random.Generator, count: int) -> dict[str, np.ndarray]:
     errors = {}
     for name, key in names.items():
         exp, log = methods.SYMMETRIC[key]
-        some = S[:, :_FEW] if exp is printed.higham_exp else S
-        errors[name] = _worst(lambda X, exp=exp, log=log: exp(log(X)), some)
+        some = S[:, :FEW] if exp is printed.higham_exp else S
+        errors[name] = _mean(lambda X, exp=exp, log=log: exp(log(X)), some)
     return errors
 
 
 def _affine(rng: np.random.Generator, count: int) -> dict[str, np.ndarray]:
-    """Return the largest error of phi(psi(A)) by method and condition number."""
+    """Return the error of phi(psi(A)) by method and condition number."""
     U, V = _rotations(rng, count), _rotations(rng, count)
     A = np.zeros((*U.shape[:2], 4, 4))
     A[..., :3, :3] = (U * _spectra(rng, count)[..., None, :]) @ np.swapaxes(V, -1, -2)
@@ -114,85 +124,40 @@ def _affine(rng: np.random.Generator, count: int) -> dict[str, np.ndarray]:
         "as printed": methods.printed_psi,
     }
     return {
-        name: _worst(lambda X, psi=psi: affine.phi_so(psi(X), check=False), A) for name, psi in ways.items()
+        name: _mean(lambda X, psi=psi: affine.phi_so(psi(X), check=False), A) for name, psi in ways.items()
     }
 
 
-def _worst(again: _Way, X: np.ndarray) -> np.ndarray:
-    """Return the largest relative error for each condition number, nan where a single one is nan."""
+def _mean(again: _Way, X: np.ndarray) -> np.ndarray:
+    """Return the root mean square of the relative errors for each condition number."""
     with np.errstate(all="ignore"):
         off = np.linalg.norm((again(X) - X)[..., :3, :3], axis=(-2, -1))
-    return np.max(off / np.linalg.norm(X[..., :3, :3], axis=(-2, -1)), axis=-1)
+    relative = np.nan_to_num(off / np.linalg.norm(X[..., :3, :3], axis=(-2, -1)), nan=1.0)
+    return np.sqrt(np.mean(np.minimum(relative, 1.0) ** 2, axis=-1))
 
 
-_LOW, _FIRST, _BAND = 128.0, 176.0, 96.0
-_WIDTH, _STARTS = 360.0, (140.0, 680.0)
-
-
-def _edge(band: int) -> float:
-    """The height of the lower edge of a band."""
-    return _LOW if band == 0 else _LOW + _FIRST + _BAND * (band - 1)
-
-
-def _x(panel: int, decade: float) -> float:
-    return _STARTS[panel] + 26.0 + (decade - 1.0) / 10.0 * (_WIDTH - 52.0)
-
-
-def _line(points: list[tuple[float, float]], color: str, width: float) -> scene.Lines:
-    return scene.Lines([(x, y, 0.0) for x, y in points], color, width)
-
-
-def _label(text: str, x: float, y: float, anchor: str, color: str = style.INK) -> scene.Label:
-    return scene.Label(text, (x, y, 0.0), color, style.SMALL_TEXT, anchor=anchor, halo=False)
-
-
-def _panel(panel: int, title: str, errors: Mapping[str, np.ndarray]) -> list[scene.Record]:
-    left, right, top = _STARTS[panel], _STARTS[panel] + _WIDTH, _edge(len(EDGES) + 1)
-    corners = [(left, _LOW, 0), (right, _LOW, 0), (right, _edge(1), 0), (left, _edge(1), 0)]
+def _panel(which: int, title: str, below: str, decades: Mapping[str, np.ndarray]) -> list[scene.Record]:
+    box = _BOXES[which]
+    left, low, width = box[:3]
+    axes = Axes(box, (0.0, CONDITIONS[-1] + 1.0), (_LOWEST, _HIGHEST))
+    middle = left + 0.5 * width
+    corners = axes.at([0.0, axes.xlim[1], axes.xlim[1], 0.0], [-15.5, -15.5, -14.5, -14.5])
+    xticks = [(d, f"$10^{{{d}}}$" if d > 1 else "$10$") for d in CONDITIONS]
+    yticks = [(d, f"$10^{{{d}}}$" if d else "$1$") for d in range(-15, 1, 3)]
     records: list[scene.Record] = [
         scene.Surface(corners, [[0, 1, 2], [0, 2, 3]], style.BAND, material="flat"),
-        scene.Label(title, (left, top + 30.0, 0), style.INK, style.TITLE_TEXT, anchor="ln", halo=False),
-        _line([(left, _LOW), (right, _LOW)], style.INK, style.THIN),
+        *axes.frame(xticks, yticks),
+        scene.Label(title, (middle, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn", halo=False),
+        _marks.label(below, middle, low - 92.0, "cn"),
+        _marks.label("rounding", left + width - 10.0, axes.at(0.0, -15.5)[1] - 7.0, "rt", style.MUTED),
+        _marks.label(
+            "no digit is right", left + width - 10.0, axes.at(0.0, 0.0)[1] + 20.0, "rn", style.MUTED
+        ),
     ]
-    for band in range(1, len(EDGES) + 2):
-        records.append(_line([(left, _edge(band)), (right, _edge(band))], style.RULE, style.HAIR))
-    for decade in CONDITIONS:
-        x = _x(panel, decade)
-        records.append(_line([(x, _LOW), (x, _LOW - 7.0)], style.INK, style.THIN))
-        if decade % 4 == 1:
-            text = "$10$" if decade == 1 else f"$10^{{{decade}}}$"
-            records.append(_label(text, x, _LOW - 42.0, "cn"))
-    for track, (name, row) in enumerate(errors.items()):
-        records += _curve(panel, name, row, (track + 0.5) / len(errors))
-    return records
-
-
-def _curve(panel: int, name: str, errors: np.ndarray, track: float) -> list[scene.Record]:
-    """Dots in their bands, joined; side by side where several methods share the lowest."""
-    levels = [level(float(error)) for error in errors]
-    places = [
-        (_x(panel, decade), _edge(band) + (track * _FIRST if band == 0 else 0.5 * _BAND))
-        for decade, band in zip(CONDITIONS, levels, strict=True)
-    ]
-    color = _COLORS[name]
-    radius = 10.0 if name == "ours" else 8.0
-    dots = scene.Points([(x, y, 0.0) for x, y in places], color, radius, shaded=False)
-    text_color = _TEXTS.get(name, style.INK)
-    y = places[-1][1]
-    right = _STARTS[panel] + _WIDTH
-    if levels[-1] == len(EDGES):
-        label = _label(name, right, y + 20.0, "rn", text_color)
-    else:
-        label = _label(name, right + 12.0, y - 10.0, "ln", text_color)
-    return [_line(places, color, style.CURVE if name == "ours" else style.EDGE), dots, label]
-
-
-def _axis() -> list[scene.Record]:
-    """Names of the bands' edges at the left, of the conditions below."""
-    records: list[scene.Record] = []
-    for band, edge in enumerate(EDGES, start=1):
-        records.append(_label(f"$10^{{{edge}}}$", _STARTS[0] - 14.0, _edge(band), "rc"))
-    records.append(_label("lost", _STARTS[0] - 14.0, _edge(len(EDGES)) + 0.5 * _BAND - 9.0, "rn"))
-    for panel, text in enumerate(("condition number of $S$", "condition number of $A$")):
-        records.append(_label(text, _STARTS[panel] + 0.5 * _WIDTH, 30.0, "cn"))
+    for column, condition in enumerate(CONDITIONS):
+        for level in range(_LEAST, 1):
+            here = [name for name, row in decades.items() if row[column] == level]
+            x, y, _ = axes.at(condition, level)
+            for k, name in enumerate(here):
+                records += _MARKS[name](x + _APART * (k - 0.5 * (len(here) - 1)), y)
     return records

@@ -8,11 +8,12 @@ import numpy as np
 from lietool.render import solids, style
 from lietool.render.camera import Box, Camera, Page, project
 from lietool.render.scene import Arrow, Frame, Label, Lines, Points, Record, Surface, Tube
+from lietool.render.theme import BOOK, Theme
 
 # More than any page has pixels; a dash that is finer would only take time.
 _MOST_DASHES = 20000
 
-MATERIALS = {"flat": 0.0, "matte": 1.0, "glass": 2.0}
+MATERIALS = {"flat": 0.0, "matte": 1.0, "glass": 2.0, "soft": 3.0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,11 +39,12 @@ class Batch:
 
 @dataclass(frozen=True)
 class Lens:
-    """What a record needs to know to become a batch: camera, box on the page, pixels per page unit."""
+    """What a record needs to know to become a batch: camera, box on the page, pixels per page unit, theme."""
 
     camera: Camera | Page
     box: Box
     unit: float
+    theme: Theme = BOOK
 
     @property
     def world(self) -> float:
@@ -52,14 +54,6 @@ class Lens:
     def depth(self, points: np.ndarray) -> np.ndarray:
         """Return the distance along the axis of view of points (..., 3)."""
         return project(self.camera, self.box, points)[..., 2]
-
-
-def rgba(color: str | np.ndarray, n: int, alpha: float = 1.0) -> np.ndarray:
-    """Return linear RGBA for `n` points; shape (n, 4)."""
-    rows = style.linear(color) if isinstance(color, str) else np.asarray(color, float)
-    rows = np.broadcast_to(rows, (n, 4)).copy()
-    rows[:, 3] *= alpha
-    return rows
 
 
 @singledispatch
@@ -85,14 +79,14 @@ def batches(record: Record, lens: Lens) -> list[Batch]:
 
 @batches.register
 def _(record: Label, lens: Lens) -> list[Batch]:
-    _finite(record.position, "Label.position")
+    finite(record.position, "Label.position")
     return []
 
 
 @batches.register
 def _(record: Surface, lens: Lens) -> list[Batch]:
-    vertices = _finite(record.vertices, "Surface.vertices")
-    faces = _faces(record.faces, len(vertices))
+    vertices = finite(record.vertices, "Surface.vertices")
+    faces = checked_faces(record.faces, len(vertices))
     if not len(faces):
         return []
     if record.material not in MATERIALS:
@@ -105,7 +99,7 @@ def _(record: Surface, lens: Lens) -> list[Batch]:
         normals = np.repeat((normals / np.where(length > 0, length, 1.0))[:, None], 3, axis=1)
     else:
         normals = np.asarray(record.normals, float)[faces]
-    color = rgba(record.color, len(vertices), record.alpha)[faces]
+    color = lens.theme.rgba(record.color, len(vertices), record.alpha)[faces]
     material = np.full((*faces.shape, 1), MATERIALS[record.material])
     data = np.concatenate([corners, normals, color, material], axis=-1).astype("f4")
     depth = lens.depth(corners.mean(axis=1))
@@ -133,16 +127,16 @@ def _walls(
 @batches.register
 def _(record: Lines, lens: Lens) -> list[Batch]:
     points = np.asarray(record.points, float).reshape(-1, 3)
-    color = rgba(record.color, len(points), record.alpha)
-    half_width = record.width * lens.unit / 2.0
+    color = lens.theme.rgba(record.color, len(points), record.alpha)
+    half_width = lens.theme.widths * record.width * lens.unit / 2.0
     # A hairline thinner than a pixel would vanish between two of them; it is drawn paler instead.
     if half_width < 0.35:
         color[:, 3] *= half_width / 0.35
         half_width = 0.35
     if record.dash:
-        points, color = _dashed(points, color, record.dash, lens)
+        points, color = dashed(points, color, record.dash, lens)
     lift = record.lift * lens.camera.height
-    rows = [_segments(points[s], color[s], half_width, lift) for s in _runs(points)]
+    rows = [_segments(points[s], color[s], half_width, lift) for s in runs(points)]
     rows = [r for r in rows if len(r)]
     if not rows:
         return []
@@ -152,18 +146,18 @@ def _(record: Lines, lens: Lens) -> list[Batch]:
 
 @batches.register
 def _(record: Points, lens: Lens) -> list[Batch]:
-    positions = _finite(record.positions, "Points.positions").reshape(-1, 3)
+    positions = finite(record.positions, "Points.positions").reshape(-1, 3)
     n = len(positions)
-    rim = rgba(record.rim, n) if record.rim else np.zeros((n, 4))
+    rim = lens.theme.rgba(record.rim, n) if record.rim else np.zeros((n, 4))
     lift = 1.5 * record.radius * lens.world
     rest = np.tile([record.radius * lens.unit, float(record.shaded), lift], (n, 1))
-    data = np.concatenate([positions, rgba(record.color, n), rim, rest], axis=-1)
+    data = np.concatenate([positions, lens.theme.rgba(record.color, n), rim, rest], axis=-1)
     return [Batch("points", data.astype("f4"), lens.depth(positions) - lift)] if n else []
 
 
 @batches.register
 def _(record: Arrow, lens: Lens) -> list[Batch]:
-    start, end = _finite(record.start, "Arrow.start"), _finite(record.end, "Arrow.end")
+    start, end = finite(record.start, "Arrow.start"), finite(record.end, "Arrow.end")
     vertices, faces, normals = solids.arrow(start, end, record.radius, record.head)
     material = "flat" if isinstance(lens.camera, Page) else "matte"
     return batches(Surface(vertices, faces, record.color, normals, material, record.alpha), lens)
@@ -171,23 +165,32 @@ def _(record: Arrow, lens: Lens) -> list[Batch]:
 
 @batches.register
 def _(record: Tube, lens: Lens) -> list[Batch]:
-    points = _finite(record.points, "Tube.points")
+    points = finite(record.points, "Tube.points")
     vertices, faces, normals = solids.tube(points, record.radius, record.closed)
     color = record.color
     if not isinstance(color, str):
         # Every ring of the tube takes the colour of the nearest point of its axis.
         near = np.argmin(np.linalg.norm(vertices[:, None] - points[None], axis=-1), axis=1)
-        color = np.asarray(color)[near]
+        color = color[near]
     return batches(Surface(vertices, faces, color, normals), lens)
 
 
 @batches.register
 def _(record: Frame, lens: Lens) -> list[Batch]:
-    origin, matrix = _finite(record.origin, "Frame.origin"), _finite(record.matrix, "Frame.matrix")
+    origin, matrix = finite(record.origin, "Frame.origin"), finite(record.matrix, "Frame.matrix")
     found: list[Batch] = []
     for axis, color in zip(matrix.T, style.AXES, strict=True):
         found += batches(Arrow(origin, origin + record.length * axis, color, record.radius), lens)
     return found
+
+
+def extent(kind: str, data: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return the points (n, 3) of a batch's rows, and how far beyond them it draws, in pixels."""
+    if kind == "lines":
+        return data[:, 3:9].reshape(-1, 3), float(data[:, 20].max())
+    if kind == "points":
+        return data[:, :3], float(data[:, 11].max())
+    return data[..., :3].reshape(-1, 3), 0.0
 
 
 def check_measures(record: Record) -> None:
@@ -199,7 +202,8 @@ def check_measures(record: Record) -> None:
             raise ValueError(f"draw.render: {type(record).__name__}.{field} must be {wanted}; got {value}")
 
 
-def _finite(values: object, name: str) -> np.ndarray:
+def finite(values: object, name: str) -> np.ndarray:
+    """Return values as an array; ValueError where one of them is NaN or infinite."""
     array = np.asarray(values, float)
     if not np.isfinite(array).all():
         where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
@@ -207,7 +211,8 @@ def _finite(values: object, name: str) -> np.ndarray:
     return array
 
 
-def _faces(values: object, count: int) -> np.ndarray:
+def checked_faces(values: object, count: int) -> np.ndarray:
+    """Return triangles (n, 3) of `count` vertices; ValueError if they are none."""
     faces = np.asarray(values)
     if faces.size == 0:
         return np.zeros((0, 3), int)
@@ -223,7 +228,8 @@ def _faces(values: object, count: int) -> np.ndarray:
     return faces
 
 
-def _runs(points: np.ndarray) -> list[slice]:
+def runs(points: np.ndarray) -> list[slice]:
+    """Return where the polylines are between which there is a row of NaN."""
     broken = np.flatnonzero(~np.isfinite(points).all(axis=1))
     starts = np.concatenate([[0], broken + 1])
     ends = np.concatenate([broken, [len(points)]])
@@ -238,28 +244,43 @@ def _segments(points: np.ndarray, color: np.ndarray, half_width: float, lift: fl
     return np.concatenate([before, points[:-1], points[1:], after, color[:-1], color[1:], rest], axis=-1)
 
 
-def _dashed(
-    points: np.ndarray, color: np.ndarray, dash: tuple[float, float], lens: Lens
-) -> tuple[np.ndarray, np.ndarray]:
+def whole_strokes(dash: tuple[float, float], length: float) -> tuple[int, float]:
+    """Return how many strokes of a dash a line of some length has, and by how much they are stretched.
+
+    Both ends of the line end in ink.
+
+    Raises
+    ------
+    ValueError
+        If they are no lengths, or so short that nobody would see them.
+    """
     stroke, gap = dash
     if not (stroke >= 0.0 and gap >= 0.0 and stroke + gap > 0.0):
         raise ValueError(f"draw.render: Lines.dash must be two lengths, not both 0; got {dash}")
+    # Of dots without length it takes two to have both ends.
+    count = max(round((length + gap) / (stroke + gap)), 1 if stroke > 0.0 else 2)
+    if count > _MOST_DASHES:
+        raise ValueError(
+            f"draw.render: Lines.dash must make at most {_MOST_DASHES} strokes of a line; "
+            f"got {dash}, which makes {count}"
+        )
+    return count, length / (count * (stroke + gap) - gap)
+
+
+def dashed(
+    points: np.ndarray, color: np.ndarray, dash: tuple[float, float], lens: Lens
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the strokes of a dashed line and their colours, as polylines with NaN between them."""
+    stroke, gap = dash
     out_points, out_color = [], []
-    for s in _runs(points):
+    for s in runs(points):
         page = project(lens.camera, lens.box, points[s])
         length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(page[:, :2], axis=0), axis=-1))])
         # What is linear on the page is a quotient in space: the far half of a segment is shorter there.
         weight = 1.0 / page[:, 2] if isinstance(lens.camera, Camera) else np.ones(len(page))
         if length[-1] == 0.0:
             continue
-        # Whole strokes: both ends of the line end in ink.
-        count = max(round((length[-1] + gap) / (stroke + gap)), 1)
-        if count > _MOST_DASHES:
-            raise ValueError(
-                f"draw.render: Lines.dash must make at most {_MOST_DASHES} strokes of a line; "
-                f"got {dash}, which makes {count}"
-            )
-        scale = length[-1] / (count * (stroke + gap) - gap)
+        count, scale = whole_strokes(dash, float(length[-1]))
         for i in range(count):
             first = i * (stroke + gap) * scale
             last = first + stroke * scale

@@ -119,6 +119,34 @@ class Page:
         return matrix
 
 
+def around(
+    points: ArrayLike, direction: tuple[float, float, float], box: Box, margin: float = 1.12
+) -> Camera:
+    """Return the camera that shows points as large as a box allows, in its middle.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+    direction : tuple of float
+        From the points towards the eye.
+    box : tuple of float
+        The view's box on the page; only its shape matters.
+    margin : float
+        How much more than the points it shows.
+    """
+    points = np.asarray(points, float).reshape(-1, 3)
+    camera = Camera(direction, tuple(points.mean(axis=0)), max(float(np.ptp(points, axis=0).max()), 1e-6))
+    # A lens sees what is near larger, so that where the middle is depends a little on where it is put.
+    for _ in range(6):
+        seen = project(camera, (0.0, 0.0, box[2] / box[3], 1.0), points)[:, :2]
+        low, high = seen.min(axis=0), seen.max(axis=0)
+        shift = ((low + high) / 2.0 - (box[2] / box[3] / 2.0, 0.5)) * camera.height
+        target = np.asarray(camera.target) + shift @ camera.axes[:2]
+        part = max((high[0] - low[0]) * box[3] / box[2], high[1] - low[1])
+        camera = Camera(direction, tuple(target), max(camera.height * part * margin, 1e-6))
+    return camera
+
+
 def project(camera: Camera | Page, box: Box, points: ArrayLike) -> np.ndarray:
     """Return where points of a view's space lie on the page.
 

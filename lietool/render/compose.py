@@ -5,9 +5,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from lietool.render import labels, style
+from lietool.render import labels, placement
 from lietool.render.camera import Box, project
 from lietool.render.scene import Label, Picture
+from lietool.render.theme import Theme
 
 # In pixels, and unequal: symmetry puts anchors half-way between two pixels, where the last bit would decide.
 _SHIFT = np.array([0.1371, 0.1193])
@@ -34,7 +35,12 @@ class PlacedLabel:
 
 
 def compose(
-    image: np.ndarray, picture: Picture, unit: float, corner: tuple[float, float], store: labels.Store
+    image: np.ndarray,
+    picture: Picture,
+    unit: float,
+    corner: tuple[float, float],
+    store: labels.Store,
+    theme: Theme,
 ) -> tuple[PlacedLabel, ...]:
     """Draw every label of a picture into its pixels, each on whole pixels.
 
@@ -49,6 +55,7 @@ def compose(
         Where the page's lower left corner lies, in pixels from the lower left of the image.
     store : Store
         Where the rasterised labels come from.
+    theme : Theme
 
     Returns
     -------
@@ -62,21 +69,55 @@ def compose(
         If a text is not mathtext, or a colour or an anchor is of no known form.
     """
     placed = []
-    page: Box = (0.0, 0.0, float(picture.size[0]), float(picture.size[1]))
-    for view in picture.views:
-        for record in view.records:
-            if not isinstance(record, Label):
-                continue
-            point = project(view.camera, view.box or page, record.position)[:2]
-            glyphs = store.get(record.text, record.size * unit)
-            x, y = (point + record.offset) * unit + corner + _SHIFT
-            left, top = _anchored(record.anchor, x, image.shape[0] - y, glyphs)
-            _lay(image, record, glyphs, (left, top), unit, picture.paper)
-            placed.append(PlacedLabel(record.text, glyphs.key, _ink_box(glyphs, left, top)))
+    for record, glyphs, point in located(picture, unit, store):
+        x, y = point * unit + corner + _SHIFT
+        left, top = _rounded(record, glyphs, x, image.shape[0] - y)
+        _lay(image, record, glyphs, (left, top), unit, theme, picture.paper)
+        placed.append(PlacedLabel(record.text, glyphs.key, _ink_box(glyphs, left, top)))
     return tuple(placed)
 
 
-def _anchored(anchor: str, x: float, y: float, glyphs: labels.Glyphs) -> tuple[int, int]:
+def located(
+    picture: Picture, unit: float, store: labels.Store
+) -> list[tuple[Label, labels.Glyphs, np.ndarray]]:
+    """Return every label of a picture with its rasterised text and the page point where its anchor goes."""
+    found = _found(picture, unit, store)
+    boxes = [(r, at, _text_box(r, at, glyphs, unit)) for r, glyphs, at in found]
+    moves = placement.places(boxes, picture)
+    return [(r, glyphs, at + r.offset + m) for (r, glyphs, at), m in zip(found, moves, strict=True)]
+
+
+def wanted(picture: Picture, unit: float, store: labels.Store) -> list[tuple[Label, np.ndarray, np.ndarray]]:
+    """Return every label of a picture with its point and the box of its text, in page units."""
+    return [(r, at, _text_box(r, at, glyphs, unit)) for r, glyphs, at in _found(picture, unit, store)]
+
+
+def _found(
+    picture: Picture, unit: float, store: labels.Store
+) -> list[tuple[Label, labels.Glyphs, np.ndarray]]:
+    page: Box = (0.0, 0.0, float(picture.size[0]), float(picture.size[1]))
+    return [
+        (
+            record,
+            store.get(record.text, record.size * unit),
+            project(view.camera, view.box or page, record.position)[:2],
+        )
+        for view in picture.views
+        for record in view.records
+        if isinstance(record, Label)
+    ]
+
+
+def _text_box(record: Label, point: np.ndarray, glyphs: labels.Glyphs, unit: float) -> np.ndarray:
+    """Left, lower, right, upper edge of the ink where a label is liked best, in page units."""
+    x, y = point + record.offset
+    # In pixels from the anchor, y down.
+    left, top, right, low = _ink_box(glyphs, *_rounded(record, glyphs, 0.0, 0.0))
+    return np.array([x + left / unit, y - low / unit, x + right / unit, y - top / unit])
+
+
+def anchored(anchor: str, glyphs: labels.Glyphs) -> tuple[float, float]:
+    """Return where the upper left corner of a text lies, seen from its anchor, in pixels, y down."""
     height, width = glyphs.coverage.shape
     right = {"l": 0.0, "c": width / 2.0, "r": float(width)}
     down = {"t": 0.0, "c": height / 2.0, "b": float(height), "n": float(height - glyphs.baseline)}
@@ -84,7 +125,12 @@ def _anchored(anchor: str, x: float, y: float, glyphs: labels.Glyphs) -> tuple[i
         raise ValueError(
             f"Label.anchor must be one of l c r and one of t c b n, such as 'cb'; got {anchor!r}"
         )
-    return round(x - right[anchor[0]]), round(y - down[anchor[1]])
+    return -right[anchor[0]], -down[anchor[1]]
+
+
+def _rounded(record: Label, glyphs: labels.Glyphs, x: float, y: float) -> tuple[int, int]:
+    left, top = anchored(record.anchor, glyphs)
+    return round(x + left), round(y + top)
 
 
 def _ink_box(glyphs: labels.Glyphs, left: int, top: int) -> tuple[int, int, int, int]:
@@ -96,14 +142,20 @@ def _ink_box(glyphs: labels.Glyphs, left: int, top: int) -> tuple[int, int, int,
 
 
 def _lay(
-    image: np.ndarray, record: Label, glyphs: labels.Glyphs, at: tuple[int, int], unit: float, paper: str
+    image: np.ndarray,
+    record: Label,
+    glyphs: labels.Glyphs,
+    at: tuple[int, int],
+    unit: float,
+    theme: Theme,
+    paper: str,
 ) -> None:
     if record.halo:
         reach, fade = max(round(_HALO_REACH * unit), 1), max(round(_HALO_FADE * unit), 1)
         soft = _halo(glyphs.coverage.tobytes(), glyphs.coverage.shape, reach, fade)
         margin = (soft.shape[0] - glyphs.coverage.shape[0]) // 2
-        _blend(image, style.srgb(paper), soft * _HALO_STRENGTH, at[0] - margin, at[1] - margin)
-    _blend(image, style.srgb(record.color), glyphs.coverage / 255.0, *at)
+        _blend(image, theme.srgb(paper), soft * _HALO_STRENGTH, at[0] - margin, at[1] - margin)
+    _blend(image, theme.srgb(record.color), glyphs.coverage / 255.0, *at)
 
 
 def _blend(image: np.ndarray, color: np.ndarray, coverage: np.ndarray, left: int, top: int) -> None:

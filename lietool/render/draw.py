@@ -5,19 +5,19 @@ half-float buffer in linear light with 3 x 3 samples a pixel; each pixel is
 the mean of its samples, encoded as sRGB; labels last.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib import resources
 from itertools import pairwise
 
 import moderngl
 import numpy as np
 
-from lietool.render import compose, context, labels, style
-from lietool.render.batches import Batch, Lens, batches, check_measures
-from lietool.render.camera import Box, Page
+from lietool.render import compose, context, labels, passes
+from lietool.render.batches import Batch, Lens, batches, check_measures, extent
+from lietool.render.camera import Box, Page, project
 from lietool.render.scene import Picture, View
+from lietool.render.theme import BOOK, Theme
 
 SAMPLES, DRAFT_SAMPLES = 3, 2
 # A buffer of this many pixels serves pictures of any size, part by part: fresh memory costs more than passes.
@@ -25,18 +25,6 @@ TILE = (1600, 450)
 LARGEST = 20000
 # In pixels, and unequal: an edge on a pixel's centre would be decided by rounding.
 _SHIFT = (0.0371, 0.0193)
-
-_LAYOUT = {
-    "surface": ("3f 3f 4f 1f", ("in_position", "in_normal", "in_color", "in_material")),
-    "lines": (
-        "3f 3f 3f 3f 4f 4f 1f 1f/i",
-        ("in_before", "in_a", "in_b", "in_after", "in_color_a", "in_color_b", "in_half_width", "in_lift"),
-    ),
-    "points": (
-        "3f 4f 4f 1f 1f 1f/i",
-        ("in_position", "in_color", "in_rim", "in_radius", "in_shaded", "in_lift"),
-    ),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +50,7 @@ def render(
     draft: bool = False,
     backend: str | None = None,
     store: labels.Store | None = None,
+    theme: Theme = BOOK,
 ) -> Rendered:
     """Render a picture.
 
@@ -77,6 +66,8 @@ def render(
         Where OpenGL comes from, see `context.get`.
     store : Store, optional
         Where labels come from; the project's own goldens unless given.
+    theme : Theme
+        What the colours of `style` look like; as in the book unless given.
 
     Returns
     -------
@@ -92,25 +83,96 @@ def render(
         If the size is not positive or too large, or a record holds what cannot be drawn.
     """
     width, height = size or picture.size
+    sheet = _sheet(picture, (width, height), draft, backend, theme)
+    image = np.empty((height, width, 3), np.uint8)
+    prepared = [_prepare(view, sheet) for view in picture.views]
+    for rows, columns, samples in _parts(sheet, prepared, theme.linear(picture.paper)):
+        image[rows, columns] = _encoding()[samples[..., :3]]
+    placed = compose.compose(image, picture, sheet.unit, sheet.corner, store or labels.Store(), theme)
+    return Rendered(image, placed)
+
+
+def layer(
+    picture: Picture,
+    view: View,
+    *,
+    size: tuple[int, int],
+    draft: bool = False,
+    backend: str | None = None,
+    theme: Theme = BOOK,
+) -> np.ndarray:
+    """Render one view of a picture alone, on no ground and without its labels.
+
+    Parameters
+    ----------
+    picture : Picture
+        Whose page it is on.
+    view : View
+    size, draft, backend, theme
+        As of `render`.
+
+    Returns
+    -------
+    ndarray of float16, shape (h, w, 4)
+        Linear light, premultiplied, and the opacity; the upper row first.
+
+    Raises
+    ------
+    NoRendererError, ValueError
+        As `render`.
+    """
+    sheet = _sheet(picture, size, draft, backend, theme)
+    prepared = _prepare(view, sheet)
+    image = np.zeros((size[1], size[0], 4), np.float16)
+    for rows, columns, samples in _parts(sheet, [prepared], np.zeros(4), _reach(prepared, sheet)):
+        image[rows, columns] = samples.view(np.float16)
+    return image
+
+
+@dataclass(frozen=True, eq=False)
+class _Sheet:
+    """The pixels that a page goes to: how many, how many of them to a page unit, where the page begins."""
+
+    gl: moderngl.Context
+    page: Box
+    size: tuple[int, int]
+    unit: float
+    corner: tuple[float, float]
+    per_side: int
+    theme: Theme
+
+
+def _sheet(picture: Picture, size: tuple[int, int], draft: bool, backend: str | None, theme: Theme) -> _Sheet:
+    width, height = size
     if not (1 <= width <= LARGEST and 1 <= height <= LARGEST):
         raise ValueError(f"draw.render: size must be 1 to {LARGEST} pixels each way; got {width}x{height}")
-    gl = context.get(backend).gl
-    unit = min(width / picture.size[0], height / picture.size[1])
-    corner = ((width - unit * picture.size[0]) / 2.0, (height - unit * picture.size[1]) / 2.0)
     page: Box = (0.0, 0.0, float(picture.size[0]), float(picture.size[1]))
-    views = [_prepare(view, page, unit) for view in picture.views]
-    per_side = DRAFT_SAMPLES if draft else SAMPLES
-    image = np.empty((height, width, 3), np.uint8)
-    for x, y, w, h in _tiles(width, height):
-        target = _target(w, h, per_side)
+    unit = min(width / page[2], height / page[3])
+    corner = ((width - unit * page[2]) / 2.0, (height - unit * page[3]) / 2.0)
+    gl = context.get(backend).gl
+    return _Sheet(gl, page, size, unit, corner, DRAFT_SAMPLES if draft else SAMPLES, theme)
+
+
+def _parts(
+    sheet: _Sheet,
+    views: Sequence["_Prepared"],
+    ground: np.ndarray,
+    region: tuple[int, int, int, int] | None = None,
+) -> Iterator[tuple[slice, slice, np.ndarray]]:
+    """Yield rows, columns and half floats (h, w, 4), by their bits, of each part of a sheet or its region."""
+    height = sheet.size[1]
+    for x, y, w, h in _tiles(*(region or (0, 0, *sheet.size))):
+        target = passes.target(w, h, sheet.per_side)
         target.samples.use()
-        target.samples.clear(*style.linear(picture.paper))
+        target.samples.clear(*ground)
+        to_tile = _page_to_tile(sheet.unit, (sheet.corner[0] - x, sheet.corner[1] - y), (w, h))
         for view in views:
-            to_tile = _page_to_tile(unit, (corner[0] - x, corner[1] - y), (w, h))
-            _draw_view(gl, target.samples, view, to_tile, (w, h), per_side)
-        image[height - y - h : height - y, x : x + w] = _resolve(gl, target, per_side)
-    placed = compose.compose(image, picture, unit, corner, store or labels.Store())
-    return Rendered(image, placed)
+            _draw_view(sheet, target.samples, view, to_tile, (w, h))
+        yield (
+            slice(height - y - h, height - y),
+            slice(x, x + w),
+            passes.resolve(sheet.gl, target, sheet.per_side),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,12 +183,12 @@ class _Prepared:
     runs: list[tuple[str, np.ndarray]]
 
 
-def _prepare(view: View, page: Box, unit: float) -> _Prepared:
-    box = view.box or page
+def _prepare(view: View, sheet: _Sheet) -> _Prepared:
+    box = view.box or sheet.page
     if not (np.isfinite(box).all() and box[2] > 0.0 and box[3] > 0.0):
         raise ValueError(f"draw.render: View.box must be x, y and a width and height above 0; got {box}")
     flat = isinstance(view.camera, Page)
-    lens = Lens(view.camera, box, unit)
+    lens = Lens(view.camera, box, sheet.unit, sheet.theme)
     for record in view.records:
         check_measures(record)
     found = [batch for record in view.records for batch in batches(record, lens)]
@@ -160,10 +222,24 @@ def _sorted_runs(rest: list[Batch], height: float) -> Iterator[tuple[str, np.nda
         yield name, rows[name][row[first:last]]
 
 
-def _tiles(width: int, height: int) -> Iterator[tuple[int, int, int, int]]:
+def _reach(prepared: _Prepared, sheet: _Sheet) -> tuple[int, int, int, int]:
+    """Left, lower edge, width and height in pixels of the part of the sheet that a view draws on."""
+    low, high = np.array(sheet.size, float), np.zeros(2)
+    for kind, data in [*((batch.kind, batch.data) for batch in prepared.opaque), *prepared.runs]:
+        points, margin = extent(kind, data)
+        seen = project(prepared.view.camera, prepared.box, points)[:, :2] * sheet.unit + sheet.corner
+        # And what antialiasing and the shift of the samples may add.
+        low = np.minimum(low, seen.min(axis=0) - margin - 2.0)
+        high = np.maximum(high, seen.max(axis=0) + margin + 2.0)
+    left, down = np.clip(np.floor(low), 0, sheet.size).astype(int).tolist()
+    right, up = np.clip(np.ceil(high), 0, sheet.size).astype(int).tolist()
+    return left, down, max(right - left, 0), max(up - down, 0)
+
+
+def _tiles(left: int, low: int, width: int, height: int) -> Iterator[tuple[int, int, int, int]]:
     for y in range(0, height, TILE[1]):
         for x in range(0, width, TILE[0]):
-            yield x, y, min(TILE[0], width - x), min(TILE[1], height - y)
+            yield left + x, low + y, min(TILE[0], width - x), min(TILE[1], height - y)
 
 
 def _page_to_tile(unit: float, corner: tuple[float, float], tile: tuple[int, int]) -> np.ndarray:
@@ -174,41 +250,16 @@ def _page_to_tile(unit: float, corner: tuple[float, float], tile: tuple[int, int
     return matrix
 
 
-@dataclass(frozen=True, eq=False)
-class _Target:
-    samples: moderngl.Framebuffer
-    texture: moderngl.Texture
-    pixels: moderngl.Framebuffer
-
-
-@lru_cache(maxsize=2)
-def _target(width: int, height: int, per_side: int) -> _Target:
-    gl = context.get().gl
-    fine = (width * per_side, height * per_side)
-    texture = gl.texture(fine, 4, dtype="f2")
-    texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
-    samples = gl.framebuffer([texture], gl.depth_renderbuffer(fine))
-    return _Target(samples, texture, gl.framebuffer([gl.renderbuffer((width, height), 4, dtype="f2")]))
-
-
-@lru_cache(maxsize=8)
-def program(name: str) -> moderngl.Program:
-    """Return a shader program of ``shaders/``, compiled once a process."""
-    folder = resources.files("lietool.render") / "shaders"
-    read = [(folder / f"{name}.{kind}").read_text() for kind in ("vert", "frag")]
-    return context.get().gl.program(vertex_shader=read[0], fragment_shader=read[1])
-
-
 def _draw_view(
-    gl: moderngl.Context,
+    sheet: _Sheet,
     samples: moderngl.Framebuffer,
     prepared: _Prepared,
     to_tile: np.ndarray,
     tile: tuple[int, int],
-    per_side: int,
 ) -> None:
+    gl, theme = sheet.gl, sheet.theme
     camera, box = prepared.view.camera, prepared.box
-    viewport = (tile[0] * per_side, tile[1] * per_side)
+    viewport = (tile[0] * sheet.per_side, tile[1] * sheet.per_side)
     flat = isinstance(camera, Page)
     # The view's own clip square becomes its box on the page, and that its place in the tile.
     place = np.eye(4)
@@ -219,63 +270,23 @@ def _draw_view(
         "view": camera.view(box).T.astype("f4").tobytes(),
         "projection": (place @ camera.projection(box)).T.astype("f4").tobytes(),
         "viewport": np.array(viewport, "f4").tobytes(),
-        "per_side": np.array(per_side, "f4").tobytes(),
+        "per_side": np.array(sheet.per_side, "f4").tobytes(),
+        "light": np.array([*theme.ambient, theme.key, theme.gloss], "f4").tobytes(),
+        "glass": np.array(theme.glass, "f4").tobytes(),
     }
     if not flat:
-        _clear_depth(samples)
+        passes.clear_depth(samples)
     gl.enable_only(moderngl.DEPTH_TEST)
     gl.depth_func = "<="
     for batch in prepared.opaque:
-        _draw(gl, batch.kind, batch.data, uniforms, flat)
+        passes.draw(gl, batch.kind, batch.data, uniforms, flat)
     gl.enable_only(moderngl.BLEND if flat else moderngl.BLEND | moderngl.DEPTH_TEST)
     gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
     samples.depth_mask = False
     samples.use()
     for kind, data in prepared.runs:
-        _draw(gl, kind, data, uniforms, flat)
+        passes.draw(gl, kind, data, uniforms, flat)
     samples.depth_mask = True
-
-
-def _clear_depth(samples: moderngl.Framebuffer) -> None:
-    """Begin a view: its depths cannot be compared with those of the views under it."""
-    samples.color_mask = (False, False, False, False)
-    samples.clear()
-    samples.color_mask = (True, True, True, True)
-    samples.use()
-
-
-def _draw(gl: moderngl.Context, kind: str, data: np.ndarray, uniforms: dict[str, bytes], flat: bool) -> None:
-    name = "surface" if kind.startswith("glass") else kind
-    shader = program(name)
-    for key, value in uniforms.items():
-        if key in shader:
-            shader[key].write(value)  # type: ignore[union-attr]
-    if name == "surface":
-        shader["side"] = {"glass far": -1.0, "glass near": 1.0}.get(kind, 0.0)
-        shader["lens"] = not flat
-    layout, attributes = _LAYOUT[name]
-    buffer = gl.buffer(np.ascontiguousarray(data, "f4"))
-    array = gl.vertex_array(shader, [(buffer, layout, *attributes)])
-    if name == "surface":
-        array.render(moderngl.TRIANGLES)
-    else:
-        array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=len(data))
-    array.release()
-    buffer.release()
-
-
-def _resolve(gl: moderngl.Context, target: _Target, per_side: int) -> np.ndarray:
-    target.pixels.use()
-    gl.enable_only(moderngl.NOTHING)
-    shader = program("resolve")
-    shader["per_side"] = per_side
-    target.texture.use(0)
-    array = gl.vertex_array(shader, [])
-    array.render(moderngl.TRIANGLES, vertices=3)
-    array.release()
-    width, height = target.pixels.size
-    raw = np.frombuffer(target.pixels.read(components=4, dtype="f2"), np.uint16)
-    return _encoding()[raw.reshape(height, width, 4)[::-1, :, :3]]
 
 
 @lru_cache(maxsize=1)

@@ -1,17 +1,23 @@
-"""Pixels to the bytes of a file: PNG that carries texts, GIF with one palette for all its frames."""
+"""Pixels to the bytes of a file: PNG with texts, still or moving, and GIF with one palette for all frames."""
 
 import io
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from PIL.PngImagePlugin import PngInfo
+
+# Past this level zlib takes longer than the rendering and saves a tenth.
+_COMPRESSION = 3
 # One of the 256 entries of a GIF stays free: it marks pixels that do not change from frame to frame.
 _COLORS = 255
 # As many pixels are looked at to choose the palette; more do not make it better.
 _SAMPLE = 400_000
 
 
-def png(image: np.ndarray, text: Mapping[str, str]) -> bytes:
+def png(image: np.ndarray, text: Mapping[str, str], dpi: float | None = None) -> bytes:
     """Return an image as the bytes of a PNG file.
 
     Parameters
@@ -20,6 +26,8 @@ def png(image: np.ndarray, text: Mapping[str, str]) -> bytes:
         sRGB, the upper row first.
     text : mapping of str to str
         Keywords and values of its text chunks.
+    dpi : float, optional
+        Dots per inch, by which programs that print know its size.
 
     Returns
     -------
@@ -31,17 +39,63 @@ def png(image: np.ndarray, text: Mapping[str, str]) -> bytes:
         If the image is of another shape or type.
     """
     from PIL import Image
+
+    check("png", [image])
+    density = {"dpi": (dpi, dpi)} if dpi else {}
+    file = io.BytesIO()
+    Image.fromarray(image).save(file, "PNG", pnginfo=_said(text), compress_level=_COMPRESSION, **density)
+    return file.getvalue()
+
+
+def apng(frames: Sequence[np.ndarray], seconds: float, text: Mapping[str, str]) -> bytes:
+    """Return frames as the bytes of a PNG file that moves, in all their colours, and loops for ever.
+
+    Parameters
+    ----------
+    frames : sequence of ndarray of uint8, shape (h, w, 3)
+        sRGB; a program that knows no moving PNG shows the first.
+    seconds : float
+        How long one round takes.
+    text : mapping of str to str
+        Keywords and values of its text chunks.
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    ValueError
+        If there is no frame, or the frames are not of one shape.
+    """
+    from PIL import Image
+
+    check("apng", frames)
+    pictures = [Image.fromarray(frame) for frame in frames]
+    # In whole milliseconds, of which none is lost over the round.
+    ends = np.rint(np.linspace(0.0, 1000.0 * seconds, len(frames) + 1)).astype(int)
+    file = io.BytesIO()
+    pictures[0].save(
+        file,
+        "PNG",
+        save_all=True,
+        append_images=pictures[1:],
+        duration=np.diff(ends).tolist(),
+        loop=0,
+        pnginfo=_said(text),
+        compress_level=_COMPRESSION,
+    )
+    return file.getvalue()
+
+
+def _said(text: Mapping[str, str]) -> "PngInfo":
     from PIL.PngImagePlugin import PngInfo
 
-    _check("png", image)
     info = PngInfo()
     for keyword, value in text.items():
         # Latin-1 goes into tEXt, anything else into iTXt.
         info.add_text(keyword, value)
-    file = io.BytesIO()
-    # Past this level zlib takes longer than the rendering and saves a tenth.
-    Image.fromarray(image).save(file, "PNG", pnginfo=info, compress_level=3)
-    return file.getvalue()
+    return info
 
 
 def gif(frames: Sequence[np.ndarray], seconds: float) -> bytes:
@@ -65,14 +119,7 @@ def gif(frames: Sequence[np.ndarray], seconds: float) -> bytes:
     ValueError
         If there is no frame, or the frames are not of one shape.
     """
-    if not frames:
-        raise ValueError("export.gif: frames must not be empty. Give at least one.")
-    for frame in frames:
-        _check("gif", frame)
-        if frame.shape != frames[0].shape:
-            raise ValueError(
-                f"export.gif: frames must be of one shape; got {frame.shape} and {frames[0].shape}."
-            )
+    check("gif", frames)
     palette, index = _palette(frames)
     pictures = [_indexed(frame, palette, index) for frame in frames]
     # Browsers take anything below two hundredths for ten.
@@ -143,8 +190,16 @@ def _colors(codes: np.ndarray) -> np.ndarray:
     return np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=1).astype(np.uint8)
 
 
-def _check(function: str, image: np.ndarray) -> None:
-    if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] != 3 or 0 in image.shape:
-        raise ValueError(
-            f"export.{function}: image must be uint8 (h, w, 3); got {image.dtype} {image.shape}."
-        )
+def check(function: str, frames: Sequence[np.ndarray]) -> None:
+    """Refuse what are no frames of one film: ValueError in the name of a function of this module."""
+    if not frames:
+        raise ValueError(f"export.{function}: frames must not be empty. Give at least one.")
+    for image in frames:
+        if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] != 3 or 0 in image.shape:
+            raise ValueError(
+                f"export.{function}: image must be uint8 (h, w, 3); got {image.dtype} {image.shape}."
+            )
+        if image.shape != frames[0].shape:
+            raise ValueError(
+                f"export.{function}: frames must be of one shape; got {image.shape} and {frames[0].shape}."
+            )

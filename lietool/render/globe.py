@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lietool.render import solids, style
 from lietool.render.camera import Camera
@@ -47,6 +48,7 @@ def globe(
     color: str = style.GLASS,
     edge: str = style.GLASS_EDGE,
     alpha: float = 1.0,
+    frame: ArrayLike | None = None,
 ) -> list[Record]:
     """Return a sphere of glass: shell, graticule every 30 degrees, equator, outline towards the camera.
 
@@ -60,14 +62,19 @@ def globe(
         Of the glass and of its outline.
     alpha : float
         Of the glass; 1 is the usual one.
+    frame : array_like, shape (3, 3), optional
+        A rotation that is applied to the graticule; its third column is then the direction of the pole.
     """
     at = np.asarray(center, float)
     vertices, faces, normals = solids.sphere(radius, center)
     steps = np.deg2rad([-60.0, -30.0, 30.0, 60.0])
     grid = joined([parallels(radius, steps), meridians(radius, np.arange(12) * np.pi / 6)])
+    equator = parallels(radius, np.zeros(1))
+    if frame is not None:
+        grid, equator = grid @ np.asarray(frame, float).T, equator @ np.asarray(frame, float).T
     return [
         Surface(vertices, faces, color, normals, "glass", alpha),
         Lines(grid + at, edge, style.HAIR, style.GRATICULE_ALPHA),
-        Lines(parallels(radius, np.zeros(1)) + at, edge, style.HAIR * 1.3, 0.75),
+        Lines(equator + at, edge, style.HAIR * 1.3, 0.75),
         Lines(camera.sphere_outline(at, radius), edge, style.EDGE),
     ]

@@ -11,10 +11,11 @@ import hashlib
 import io
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,8 @@ from lietool import atomic, cache, paths
 
 # Part of every key: what is drawn for a text changes only together with this.
 FORMAT = "cm-1"
+# What is no mathematics in a text; the rest is in the fonts of the same family.
+FONT = "cmr10"
 # Rasterising larger and averaging gives the same shape wherever a glyph falls on the pixels.
 _OVERSAMPLE = 4
 
@@ -140,9 +143,14 @@ class Store:
 
 def _kept() -> Path | None:
     """The cache of the matplotlib that is installed: another one may draw the same text otherwise."""
+    return cache.folder(f"labels-{_version()}")
+
+
+@lru_cache(maxsize=1)
+def _version() -> str:
     from importlib import metadata
 
-    return cache.folder(f"labels-{metadata.version('matplotlib')}")
+    return metadata.version("matplotlib")
 
 
 @lru_cache(maxsize=512)
@@ -202,29 +210,38 @@ def rasterise(text: str, pixels: float) -> tuple[np.ndarray, int]:
     ValueError
         If the text is not mathtext.
     """
-    if kept := cache.folder("matplotlib"):
-        # Else it complains on stderr where there is no home to write to.
-        os.environ.setdefault("MPLCONFIGDIR", str(kept))
-    import logging
+    with typesetting():
+        from matplotlib.font_manager import FontProperties
+        from matplotlib.mathtext import MathTextParser
 
-    # Where it keeps its own cache, and which glyphs it lacks, is no message for the user of a figure.
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)
-    import matplotlib
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.mathtext import MathTextParser
-
-    style: Any = {"mathtext.fontset": "cm", "font.family": "cmr10", "text.hinting": "none"}
-    with matplotlib.rc_context(style):
         # The error quotes the text and a caret before it comes to the point in its last line.
         try:
             drawn = MathTextParser("agg").parse(
-                text, 72, FontProperties(size=pixels * _OVERSAMPLE, family="cmr10")
+                text, 72, FontProperties(size=pixels * _OVERSAMPLE, family=FONT)
             )
         except ValueError as error:
             reason = str(error).strip().splitlines()[-1]
             raise ValueError(f"labels.rasterise: text must be mathtext; got {text!r} ({reason})") from None
     fine = np.asarray(drawn.image, float)
     return _average(fine, round(drawn.depth))
+
+
+@contextlib.contextmanager
+def typesetting(settings: Mapping[str, Any] = MappingProxyType({})) -> Iterator[None]:
+    """Let matplotlib set text as every label is set, whatever its user has chosen; `settings` come on top."""
+    if kept := cache.folder("matplotlib"):
+        # Else it complains on stderr where there is no home to write to.
+        os.environ.setdefault("MPLCONFIGDIR", str(kept))
+    import logging
+
+    # Where it keeps its own cache, and which glyphs it lacks, is no message for the user of a figure.
+    for name in ("matplotlib", "fontTools"):
+        logging.getLogger(name).setLevel(logging.ERROR)
+    import matplotlib
+
+    fonts: Any = {"mathtext.fontset": "cm", "font.family": FONT, "text.hinting": "none"}
+    with matplotlib.rc_context(fonts | dict(settings)):
+        yield
 
 
 def _average(fine: np.ndarray, depth: int) -> tuple[np.ndarray, int]:

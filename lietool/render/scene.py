@@ -7,34 +7,33 @@ rendered to; widths, radii of points, text sizes and label offsets are in page
 units too.  Positions of records are in the space of the view's camera, which
 for `camera.Page` is the page itself.
 
-Colours are hex strings of `style` or, where a record says so, an array of
-linear RGBA with one row for each point.
+Colours are those of `style`, which a theme may change, or hex strings, which it leaves alone; where a
+record says so, also a `Mix` or an array of linear RGBA with one row for each point.
 """
 
 from dataclasses import dataclass, field
 from typing import Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
+from lietool.render import style
 from lietool.render.camera import Camera, Page
-
-Color = str | np.ndarray
+from lietool.render.theme import Color
 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Triangles, lit ("matte"), unlit ("flat"), or a convex shell of glass ("glass").
+    """Triangles: lit ("matte"), lit softly ("soft"), unlit ("flat"), or a convex shell of glass ("glass").
 
     Parameters
     ----------
     vertices : array_like, shape (n, 3)
     faces : array_like of int, shape (m, 3)
-    color : str or ndarray, shape (n, 4)
-        One colour, or linear RGBA for each vertex.
+    color : str, Mix or ndarray, shape (n, 4)
+        One colour, or one for each vertex.
     normals : array_like, shape (n, 3), optional
         Unit normals; without them every face is flat.
-    material : {"matte", "flat", "glass"}
+    material : {"matte", "flat", "glass", "soft"}
     alpha : float
         Opacity; below 1 the triangles are sorted by depth.
     """
@@ -43,7 +42,7 @@ class Surface:
     faces: ArrayLike
     color: Color
     normals: ArrayLike | None = None
-    material: Literal["matte", "flat", "glass"] = "matte"
+    material: Literal["matte", "flat", "glass", "soft"] = "matte"
     alpha: float = 1.0
 
 
@@ -54,7 +53,7 @@ class Lines:
     Parameters
     ----------
     points : array_like, shape (n, 3)
-    color : str or ndarray, shape (n, 4)
+    color : str, Mix or ndarray, shape (n, 4)
     width : float
         In page units.
     alpha : float
@@ -80,7 +79,7 @@ class Points:
     Parameters
     ----------
     positions : array_like, shape (n, 3)
-    color : str or ndarray, shape (n, 4)
+    color : str, Mix or ndarray, shape (n, 4)
     radius : float
         In page units.
     rim : str, optional
@@ -115,7 +114,7 @@ class Tube:
     Parameters
     ----------
     points : array_like, shape (n, 3)
-    color : str or ndarray, shape (n, 4)
+    color : str, Mix or ndarray, shape (n, 4)
     radius : float
     closed : bool
     """
@@ -159,6 +158,9 @@ class Label:
     anchor : str
         Which point of the text's box goes there: two letters, "l", "c" or "r"
         and then "b", "c", "t" or "n" (the base line).
+    room : float
+        How far from the point, in page units, the text may be moved to a place that is free of other
+        text and of lines; 0 leaves it where `offset` and `anchor` put it. They say which place is liked best.
     """
 
     text: str
@@ -168,6 +170,7 @@ class Label:
     offset: tuple[float, float] = (0.0, 0.0)
     anchor: str = "cc"
     halo: bool = True
+    room: float = 0.0
 
 
 Record = Surface | Lines | Points | Arrow | Tube | Frame | Label
@@ -188,4 +191,4 @@ class Picture:
 
     views: tuple[View, ...]
     size: tuple[int, int] = (1200, 900)
-    paper: str = "#ffffff"
+    paper: str = style.PAPER

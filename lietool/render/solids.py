@@ -1,7 +1,6 @@
 """Shapes that records are made of: tubes, arrows, balls, rings, as triangles with smooth normals.
 
-These are for looking at: vertices are doubled along sharp edges.  Meshes to compute with are in
-`lietool.mesh.shapes`.
+These are for looking at, not to compute with: vertices are doubled along sharp edges.
 """
 
 from itertools import pairwise

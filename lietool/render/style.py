@@ -1,43 +1,80 @@
 """Colours, widths and type sizes, named by what they mean; nothing else in the project knows a colour.
 
-Every colour is an sRGB hex string.  The three frame colours keep apart for the
-common forms of colour blindness because they differ in lightness (red in the
-middle, green light, blue dark), so that they keep apart in grey too; type in
-their colours takes the darker `AXES_TEXT`.  Widths and sizes are in page units: the page of a
-picture is 1200 x 900 of them unless it says otherwise.
+A colour is a `Tone`: its value on the book's white paper, on a dark slide, and in a
+print that may lose its hues, where lightness alone has to tell things apart.  The
+three frame colours keep apart for the common forms of colour blindness because they
+differ in lightness (red in the middle, green light, blue dark), so that they keep
+apart in grey too; type in their colours takes the darker `AXES_TEXT`.  Widths and
+sizes are in page units: the page of a picture is 1200 x 900 of them unless it says
+otherwise.
 """
 
-import re
-
 import numpy as np
+from numpy.typing import ArrayLike
 
-PAPER = "#ffffff"
-INK = "#2b2f36"
-MUTED = "#6b7280"
-RULE = "#c9cdd4"
-BAND = "#eef2f7"
+from lietool.render.theme import Mix, Tone
 
-ARC = "#e0860b"
-ARC_TEXT = "#94560a"
-ALGEBRA = "#2b66b1"
-ALGEBRA_TEXT = "#1f4d8a"
-WRONG = "#c8372d"
-RIGHT = "#2b66b1"
-MARK = "#c8372d"
+#             book       dark       print
+PAPER = Tone("#ffffff", "#171a20", "#ffffff")
+INK = Tone("#2b2f36", "#e6e8ec", "#000000")
+MUTED = Tone("#6b7280", "#a3abb8", "#555555")
+RULE = Tone("#c9cdd4", "#3d444f", "#b4b4b4")
+BAND = Tone("#eef2f7", "#222730", "#eeeeee")
 
-AXIS_X = "#cc3b30"
-AXIS_Y = "#69b78d"
-AXIS_Z = "#21508f"
+ARC = Tone("#e0860b", "#f0a03a", "#c47a00")
+ARC_TEXT = Tone("#94560a", "#f5b862", "#7a4600")
+ALGEBRA = Tone("#2b66b1", "#6ea8f0", "#12386f")
+ALGEBRA_TEXT = Tone("#1f4d8a", "#93bff5", "#0d2a54")
+WRONG = Tone("#c8372d", "#f2695c", "#c8372d")
+RIGHT = Tone("#2b66b1", "#6ea8f0", "#12386f")
+MARK = Tone("#c8372d", "#f2695c", "#c8372d")
+
+BEFORE = Tone("#e3e7ed", "#2f353f", "#ebebeb")
+BEFORE_EDGE = Tone("#8d97a6", "#8591a3", "#8a8a8a")
+BETWEEN = Tone("#fdeccf", "#51422a", "#d8ccb4")
+BETWEEN_EDGE = Tone("#c58a35", "#d39a45", "#7d6a48")
+AFTER = Tone("#f0b35a", "#b97722", "#e09a3c")
+AFTER_EDGE = Tone("#94560a", "#f7cf8f", "#4a2b00")
+ROUTE_1 = Tone("#17736d", "#3fc4b8", "#0c4f4a")
+ROUTE_1_TEXT = Tone("#0f5c57", "#5fd6cb", "#0a423e")
+ROUTE_2 = Tone("#b565b0", "#c77fd8", "#b974b4")
+ROUTE_2_TEXT = Tone("#8a3f86", "#dba3e6", "#7a3576")
+GROUP, GROUP_TEXT = ARC, ARC_TEXT
+
+AXIS_X = Tone("#cc3b30", "#f58e82", "#c8372d")
+AXIS_Y = Tone("#69b78d", "#aee8c6", "#48a075")
+AXIS_Z = Tone("#21508f", "#4f86d8", "#143a70")
 AXES = (AXIS_X, AXIS_Y, AXIS_Z)
-AXES_TEXT = ("#b02f26", "#2c7a52", "#21508f")
-GREYS = ("#3a3f47", "#8d939d", "#d9dde3")
+AXES_TEXT = (
+    Tone("#b02f26", "#f8a59b", "#a3271d"),
+    Tone("#2c7a52", "#a5e0bd", "#22704a"),
+    Tone("#21508f", "#7fb0f2", "#143a70"),
+)
+GREYS = (
+    Tone("#3a3f47", "#d3d7de", "#333333"),
+    Tone("#8d939d", "#8d949f", "#5e5e5e"),
+    Tone("#d9dde3", "#4b515c", "#d0d0d0"),
+)
 
-GLASS = "#b4cdea"
-GLASS_EDGE = "#4a6a94"
-BONE = "#f3f1ea"
-SHELLS = ("#7aa6d8", "#f0b35a", "#6fb58f")
-SHELL_FILLS = ("#b3cdee", "#fadcae", "#b9dfca")
-SHELLS_TEXT = ("#2b5f9e", "#94560a", "#26704a")
+GLASS = Tone("#b4cdea", "#5f86bd", "#c9d3de")
+GLASS_EDGE = Tone("#4a6a94", "#8fb0dc", "#33455c")
+BONE = Tone("#f3f1ea", "#6d7480", "#f3f1ea")
+SHELLS = (
+    Tone("#7aa6d8", "#4f7fbd", "#6f9acd"),
+    Tone("#f0b35a", "#c98a35", "#f6cf8d"),
+    Tone("#6fb58f", "#4d9a72", "#2f7a55"),
+)
+SHELL_FILLS = (
+    Tone("#b3cdee", "#2f4a70", "#92aeda"),
+    Tone("#fadcae", "#6b4d22", "#fdf0d8"),
+    Tone("#b9dfca", "#2c5a43", "#b6d6c4"),
+)
+SHELLS_TEXT = (
+    Tone("#2b5f9e", "#8fbdf2", "#1d4476"),
+    Tone("#94560a", "#f0bb70", "#7a4600"),
+    Tone("#26704a", "#86d3aa", "#1b5436"),
+)
+RAMP = (AXIS_Z, Tone("#f2e3c0", "#f2e3c0", "#9a938a"), Tone("#d96b2b", "#e57a3a", "#f5d9b0"))
 
 CURVE = 3.2
 HAIR = 1.05
@@ -51,67 +88,42 @@ TEXT = 33.0
 TITLE_TEXT = 35.0
 
 
-def srgb(color: str) -> np.ndarray:
-    """Return a hex colour as its three levels, 0 to 255.
+def ramp(t: ArrayLike, tones: tuple[str, ...] = RAMP) -> Mix:
+    """Return colours along a ramp, mixed in linear light.
 
     Parameters
     ----------
-    color : str
-        ``#rrggbb``.
-
-    Returns
-    -------
-    ndarray, shape (3,)
-
-    Raises
-    ------
-    ValueError
-        If it is not of that form.
-    """
-    if not isinstance(color, str) or not re.fullmatch("#[0-9A-Fa-f]{6}", color):
-        raise ValueError(f"style.srgb: color must be #rrggbb; got {color!r}. Take one of style's own")
-    return np.array([int(color[i : i + 2], 16) for i in (1, 3, 5)], float)
-
-
-def linear(color: str, alpha: float = 1.0) -> np.ndarray:
-    """Return an sRGB hex colour as linear RGBA.
-
-    Parameters
-    ----------
-    color : str
-        ``#rrggbb``.
-    alpha : float
-        Opacity, 0 to 1.
-
-    Returns
-    -------
-    ndarray, shape (4,)
-        Linear red, green, blue and the opacity (not premultiplied).
-
-    Raises
-    ------
-    ValueError
-        If the colour is not of that form.
-    """
-    levels = srgb(color) / 255.0
-    rgb = np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
-    return np.append(rgb, alpha)
-
-
-def ramp(t: np.ndarray, colors: tuple[str, ...] = (AXIS_Z, "#f2e3c0", "#d96b2b")) -> np.ndarray:
-    """Return linear RGBA along a ramp of colours.
-
-    Parameters
-    ----------
-    t : ndarray, shape (n,)
+    t : array_like, shape (n,)
         Positions, 0 to 1.
-    colors : tuple of str
+    tones : tuple of str
         The stops, equally spaced; blue, cream, orange unless given.
 
     Returns
     -------
-    ndarray, shape (n, 4)
+    Mix
+        n colours.
     """
-    stops = np.array([linear(c) for c in colors])
-    where = np.linspace(0.0, 1.0, len(stops))
-    return np.stack([np.interp(t, where, stops[:, i]) for i in range(4)], axis=-1)
+    t = np.asarray(t, float).reshape(-1)
+    where = np.linspace(0.0, 1.0, len(tones))
+    hats = [np.interp(t, where, row) for row in np.eye(len(tones))]
+    return Mix(tones, np.stack(hats, axis=-1), np.ones(len(t)))
+
+
+def fade(color: str | Mix, alpha: ArrayLike) -> Mix:
+    """Return a colour, or several, with other opacities.
+
+    Parameters
+    ----------
+    color : str or Mix
+    alpha : array_like, shape () or (n,)
+        Opacity of each point, 0 to 1; those of several colours are multiplied by it.
+
+    Returns
+    -------
+    Mix
+        n colours; one, which serves for any number of points, where `alpha` is a number.
+    """
+    alpha = np.atleast_1d(np.asarray(alpha, float))
+    if isinstance(color, Mix):
+        return Mix(color.tones, color.weights, color.alpha * alpha)
+    return Mix((color,), np.ones((len(alpha), 1)), alpha)

@@ -1,18 +1,17 @@
 """The command of a figure: its parameters and plates as options, help and completion."""
 
-import re
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import click
 from click.shell_completion import CompletionItem
 
 from lietool.figure import Figure, Parameter, nearest, plates
-from lietool.verbs import _picture
+from lietool.verbs import _film, _picture, _size
 
 # Repeated here so that completion need not load OpenGL; a test compares them with `render`.
 BACKENDS = ("osmesa", "egl", "gpu", "system")
-LARGEST = 20000
 _METAVARS = {"float": "NUMBER", "int": "N", "str": "TEXT", "path": "FILE"}
 
 
@@ -39,17 +38,26 @@ class _Command(click.Command):
         *,
         output: str | None,
         plate: str | None,
-        size: tuple[int, int] | None,
+        theme: str,
+        size: _size.Size | None,
+        dpi: float | None,
         draft: bool,
         json: bool,
         backend: str | None,
+        seconds: float | None = None,
+        fps: float | None = None,
         **given: object,
     ) -> None:
         # An option that is not given is None, for it has no default of its own.
         explicit = {name: value for name, value in given.items() if value is not None}
         params = (self.figure.plate_params(plate) if plate else {}) | explicit
-        quality = _picture.Quality(size, draft, backend)
-        _picture.make(self.figure, params, output, quality, numbers=json, swept=set(explicit))
+        for idle in self.figure.idle(self.figure.check(params), explicit):
+            raise click.UsageError(
+                f"{idle.option} has a part in the picture only {idle.where}. Leave it out, or write that"
+            )
+        quality = _picture.Quality(size, dpi, theme, draft, backend)
+        pace = _film.Pace(seconds, fps)
+        _picture.make(self.figure, params, output, quality, pace=pace, numbers=json, swept=set(explicit))
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         own = {parameter.name for parameter in self.figure.parameters}
@@ -129,29 +137,47 @@ class _PlateId(click.ParamType):
         ]
 
 
-class _Size(click.ParamType):
-    """Width and height in pixels."""
+class _Read(click.ParamType):
+    """An option that a function reads; where it cannot, its ValueError says "must be ...; got ..."."""
 
-    name = "size"
+    name = "text"
+
+    def __init__(self, read: Callable[[str], Any]) -> None:
+        self.read = read
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        if match := re.fullmatch(r"([1-9][0-9]{0,4})[xX]([1-9][0-9]{0,4})", value):
-            width, height = int(match[1]), int(match[2])
-            if width <= LARGEST and height <= LARGEST:
-                return width, height
-        raise click.UsageError(
-            f"--size must be width x height in pixels, each 1 to {LARGEST}; got {value!r}. "
-            "Write for example --size 1200x900",
-            ctx,
-        )
+        try:
+            return self.read(value)
+        except ValueError as error:
+            option = param.opts[-1] if param else "a value"
+            raise click.UsageError(f"{option} {error}", ctx) from None
+
+
+def _up_to(most: float, unit: str, example: float) -> Callable[[str], float]:
+    def read(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not 0.0 < value <= most:
+            raise ValueError(
+                f"must be a number of {unit}, more than 0 and up to {most:g}; got {text!r}. "
+                f"Write for example {example:g}"
+            )
+        return value
+
+    return read
+
+
+SIZE, DPI, THEME = _Read(_size.parse), _Read(_size.dpi), click.Choice(_picture.THEMES)
 
 
 def _option(parameter: Parameter) -> click.Option:
     param, default = parameter.param, parameter.default
-    facts = [parameter.range] if parameter.range else []
+    facts = [fact for fact in (parameter.where, parameter.range) if fact]
     if parameter.kind == "bool":
         on, off = parameter.option, f"--no-{parameter.option[2:]}"
-        about = f"{param.help} [default {on if default else off}]"
+        about = f"{param.help} [{'; '.join([*facts, f'default {on if default else off}'])}]"
         return click.Option([f"{on}/{off}", parameter.name], default=None, help=about)
     if default is not None:
         facts.append(f"default {parameter.text(default)}")
@@ -167,13 +193,45 @@ def _option(parameter: Parameter) -> click.Option:
 
 
 def _common(figure: Figure) -> Iterator[click.Option]:
-    endings = " or ".join(_picture.ENDINGS)
-    about = f"File to write; it ends in {endings}. [default ./{figure.name}.png]"
+    about = f"File to write; it ends in {_picture.listed(_picture.ENDINGS)}. [default ./{figure.name}.png]"
     yield click.Option(["-o", "--output"], type=click.Path(), metavar="FILE", help=about)
     yield click.Option(
         ["--plate"], type=_PlateId(figure), metavar="ID", help="Start from this plate's parameters."
     )
-    yield click.Option(["--size"], type=_Size(), metavar="WxH", help="Pixels. [default: the picture's own]")
+    yield click.Option(
+        ["--theme"],
+        type=THEME,
+        default="book",
+        help="White paper, a dark slide, or print in grey. [default: book]",
+    )
+    yield click.Option(
+        ["--size"],
+        type=SIZE,
+        metavar="SIZE",
+        help="Pixels, 1600x1200, or a length in cm, mm, in or pt: a width, 8.5cm, or both, 8.5cmx6cm. "
+        "[default: the picture's own; 12 cm wide as .svg or .pdf]",
+    )
+    yield click.Option(
+        ["--dpi"],
+        type=DPI,
+        metavar="N",
+        help="Dots per inch of a length, and of images in .svg and .pdf. [default 300]",
+    )
+    if figure.time:
+        time = figure.time
+        yield click.Option(
+            ["--seconds"],
+            type=_Read(_up_to(_film.LONGEST, "seconds", 4)),
+            metavar="N",
+            help=f"How long a film takes. [default {time.seconds:g}]",
+        )
+        yield click.Option(
+            ["--fps"],
+            type=_Read(_up_to(_film.FASTEST, "pictures a second", 30)),
+            metavar="N",
+            help=f"Its pictures a second. [default {_film.rate(time, '.mp4'):g}; "
+            f".gif {_film.rate(time, '.gif'):g}]",
+        )
     yield click.Option(["--draft"], is_flag=True, help="Faster, with coarser edges.")
     yield click.Option(
         ["--json"], is_flag=True, help="Print the numbers shown; without -o, no picture is made."

@@ -30,6 +30,8 @@ def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> N
         raise _studio.Stop(4, studio.trouble)
     everything = [item.place for item in _studio.items()]
     roots = list(dict.fromkeys(item.place.root for item in items))
+    from lietool.verbs import _figures_gallery
+
     with contextlib.ExitStack() as locks:
         # Labels are shared: from looking for them to the last picture nobody else may write or sweep.
         for root in sorted(roots):
@@ -44,6 +46,8 @@ def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> N
                 click.echo(
                     f"removed {len(removed)} labels that no golden uses: {', '.join(p.stem for p in removed)}"
                 )
+        for path in _figures_gallery.write_readme([i for i in _studio.items() if i.place.root in roots]):
+            click.echo(f"{path}: renewed")
 
 
 def _accept(item: _studio.Item, studio: _studio.Studio, reason: str) -> str:

@@ -6,21 +6,23 @@ import shutil
 import sys
 import time
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
 from lietool import atomic
-from lietool.verbs import _figures_verify, _studio, _table
+from lietool.verbs import _figures_verify, _jobs, _picture, _studio, _table
 
 
 def run(
     items: Sequence[_studio.Item],
     studio: _studio.Studio,
     folder: Path,
-    size: tuple[int, int] | None,
-    draft: bool,
+    quality: _picture.Quality,
     as_json: bool,
+    jobs: int = 1,
 ) -> None:
     """Make pictures and print how they compare with their goldens.
 
@@ -29,46 +31,54 @@ def run(
     items : sequence of Item
         The plates.
     studio : Studio
-        The renderer.
+        The renderer of this process.
     folder : Path
         Where the pictures go, each as its plate's id.
-    size : tuple of int, optional
-        Another size than the picture's own, in pixels.
-    draft : bool
-        With fewer samples.
+    quality : Quality
+        How to render; any but the usual one is not compared.
     as_json : bool
         Print JSON.
+    jobs : int
+        How many processes share the work.
 
     Raises
     ------
     Stop
         With 4 if nothing renders, with 2 if a picture cannot be written.
     """
-    from lietool.render import export
-
-    studio.require()
-    comparable = size is None and not draft and not studio.trouble
-    rows = []
-    for item in _table.progress(items, "building"):
-        start = time.perf_counter()
-        painted = studio.paint(item, size=size, draft=draft)
-        path = folder / f"{item.id}.png"
-        made = _studio.provenance(item, studio.info)
-        with _studio.writing(str(path)):
-            atomic.write_bytes(path, export.png(painted.image, made))
-        seconds = time.perf_counter() - start
-        word = _figures_verify.judge(item, painted).word if comparable else "not compared"
-        rows.append({"plate": item.id, "seconds": round(seconds, 3), "verdict": word, "path": str(path)})
+    if jobs < 2:
+        studio.require()
+    work = partial(_build, folder=folder, quality=quality, studio=studio if jobs < 2 else None)
+    rows = list(_jobs.each(work, items, jobs, "building"))
     if as_json:
         click.echo(json.dumps(rows, indent=2, ensure_ascii=False))
         return
     cells = [[row["plate"], f"{row['seconds']:.2f} s", row["verdict"], row["path"]] for row in rows]
     _table.show(("plate", "time", "against golden", "path"), cells, verdict=2)
-    for line in _next(items, rows, comparable):
+    for line in _next(items, rows):
         click.echo(line)
 
 
-def _next(items: Sequence[_studio.Item], rows: Sequence[dict], comparable: bool) -> list[str]:
+def _build(
+    item: _studio.Item, folder: Path, quality: _picture.Quality, studio: _studio.Studio | None
+) -> dict[str, Any]:
+    from lietool.render import export
+
+    studio = studio or _studio.Studio()
+    studio.require()
+    start = time.perf_counter()
+    painted = studio.paint(item, size=quality.size, draft=quality.draft, theme=quality.theme)
+    path = folder / f"{item.id}.png"
+    made = _studio.provenance(item, studio.info)
+    with _studio.writing(str(path)):
+        atomic.write_bytes(path, export.png(painted.image, made, quality.density))
+    seconds = time.perf_counter() - start
+    judged = quality.comparable and not studio.trouble
+    word = _figures_verify.judge(item, painted).word if judged else "not compared"
+    return {"plate": item.id, "seconds": round(seconds, 3), "verdict": word, "path": str(path)}
+
+
+def _next(items: Sequence[_studio.Item], rows: Sequence[dict[str, Any]]) -> list[str]:
     if not items:
         return ["No plates yet."]
     first = items[0]
@@ -80,8 +90,8 @@ def _next(items: Sequence[_studio.Item], rows: Sequence[dict], comparable: bool)
     }
     width = max(map(len, tries))
     lines = ["Try next:", *(f"  {line:<{width}}  {what}" for line, what in tries.items())]
-    wrong = [row["plate"] for row in rows if row["verdict"] not in ("equal", "passes")]
-    if comparable and wrong:
+    wrong = [row["plate"] for row in rows if row["verdict"] not in ("equal", "passes", "not compared")]
+    if wrong:
         lines += [
             f"Not as accepted: {', '.join(wrong)}. `{program} figures verify {' '.join(wrong[:3])}` says why."
         ]

@@ -2,14 +2,15 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
 from lietool.golden import explain, folder, verdict
-from lietool.verbs import _studio, _table
+from lietool.verbs import _jobs, _studio
 
 # Of these a reader wants to see the pictures.
 _SEEN = {"picture", "size", "missing", "torn", "half accepted", "parameters"}
@@ -26,7 +27,13 @@ class Result:
 
 
 def run(
-    items: Sequence[_studio.Item], studio: _studio.Studio, failed: Path, as_json: bool, *, everything: bool
+    items: Sequence[_studio.Item],
+    studio: _studio.Studio,
+    failed: Path,
+    as_json: bool,
+    *,
+    everything: bool,
+    jobs: int = 1,
 ) -> int:
     """Compare plates with their goldens and print the verdicts.
 
@@ -42,6 +49,8 @@ def run(
         Print JSON.
     everything : bool
         Whether these are all plates, so that goldens without a plate can be found.
+    jobs : int
+        How many processes share the work.
 
     Returns
     -------
@@ -49,14 +58,8 @@ def run(
         The exit code.
     """
     general = [verdict.Finding("renderer", studio.trouble)] if studio.trouble else []
-    results = []
-    for item in _table.progress(items, "verifying"):
-        try:
-            results.append(_verify(item, studio, failed))
-        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-            # Its own parameters were drawn once; the other plates still have to be judged.
-            found = verdict.Finding("undrawn", f"cannot be drawn any more: {error}")
-            results.append(Result(item, verdict.Verdict((found,))))
+    work = partial(_judged, studio=studio if jobs < 2 else None, failed=failed)
+    results = list(_jobs.each(work, items, jobs, "verifying"))
     if everything:
         general += _unregistered(items)
     code = verdict.exit_code([*general, *(f for result in results for f in result.verdict.findings)])
@@ -70,6 +73,15 @@ def run(
     else:
         _print(results, general)
     return code
+
+
+def _judged(item: _studio.Item, studio: _studio.Studio | None, failed: Path) -> Result:
+    try:
+        return _verify(item, studio or _studio.Studio(), failed)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        # Its own parameters were drawn once; the other plates still have to be judged.
+        found = verdict.Finding("undrawn", f"cannot be drawn any more: {error}")
+        return Result(item, verdict.Verdict((found,)))
 
 
 def judge(item: _studio.Item, painted: _studio.Painted, *, pictured: bool = True) -> verdict.Verdict:
@@ -117,7 +129,8 @@ def _verify(item: _studio.Item, studio: _studio.Studio, failed: Path) -> Result:
                 lines = explain.lines(found.golden.image, painted.image, found.comparison)
     with _studio.writing(str(failed)):
         left = explain.leave(failed, item.id, **pictures)
-    return Result(item, found, tuple(lines), tuple(left))
+    # The golden's picture has served, and would only fill memory or the way from one process to another.
+    return Result(item, replace(found, golden=None), tuple(lines), tuple(left))
 
 
 def _unregistered(items: Sequence[_studio.Item]) -> list[verdict.Finding]:

@@ -1,12 +1,9 @@
 """From a figure and its parameters to a file: a picture, or frames over the figure's time."""
 
 import json
-import math
 import os
-import sys
 from collections.abc import Mapping
-from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,20 +12,85 @@ import click
 import lietool
 from lietool import atomic, paths
 from lietool.figure import Drawing, Figure, Time, project
+from lietool.verbs import _film, _size
+from lietool.verbs._film import sweep as sweep
 
 if TYPE_CHECKING:
     import numpy as np
 
-ENDINGS = (".png", ".gif")
+    from lietool.render.labels import Store
+    from lietool.render.scene import Picture
+    from lietool.render.theme import Theme
+
+VECTORS = (".svg", ".pdf")
+ENDINGS = (".png", *VECTORS, *_film.ENDINGS)
+# Repeated here so that completion need not load numpy; a test compares them with `render`.
+THEMES = ("book", "dark", "print")
 
 
 @dataclass(frozen=True)
 class Quality:
-    """How to render: size in pixels (None is the picture's own), draft or not, and with what."""
+    """How to render.
 
-    size: tuple[int, int] | None = None
+    Parameters
+    ----------
+    size : Size, optional
+        The picture's own unless given.
+    dpi : float, optional
+        Dots per inch, where the size is a length or the file is one of vectors.
+    theme : str
+    draft : bool
+        With fewer samples.
+    backend : str, optional
+        Where OpenGL comes from.
+    """
+
+    size: _size.Size | None = None
+    dpi: float | None = None
+    theme: str = "book"
     draft: bool = False
     backend: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.size and self.dpi:
+            object.__setattr__(self, "size", replace(self.size, dpi=self.dpi))
+
+    @property
+    def comparable(self) -> bool:
+        """Whether a picture can be like its golden."""
+        return self == Quality()
+
+    @property
+    def look(self) -> "Theme":
+        """The theme itself."""
+        from lietool.render import theme
+
+        return theme.THEMES[self.theme]
+
+    @property
+    def density(self) -> float | None:
+        """Dots per inch of a picture of a given length; None where it has none."""
+        return self.size.dpi if self.size and self.size.is_length else None
+
+    def check(self, ending: str) -> None:
+        """Refuse what contradicts itself, or makes no sense for files with an ending.
+
+        Raises
+        ------
+        click.UsageError
+            If dots per inch are given but no length, or pixels for a file of vectors.
+        """
+        if ending in VECTORS:
+            if self.size and not self.size.is_length:
+                raise click.UsageError(
+                    f"--size {self.size.text} is in pixels, but a {ending} has none. "
+                    "Write a length, for example --size 12cm"
+                )
+        elif self.dpi and not (self.size and self.size.is_length):
+            raise click.UsageError(
+                "--dpi says how many pixels a length has, and no length is given. "
+                f"Write for example --size 8.5cm --dpi {self.dpi:g}"
+            )
 
 
 def make(
@@ -37,6 +99,7 @@ def make(
     output: str | None,
     quality: Quality,
     *,
+    pace: _film.Pace = _film.ITS_OWN,
     numbers: bool,
     swept: set[str],
 ) -> None:
@@ -50,27 +113,35 @@ def make(
     output : str, optional
         The file; None is ``./<figure>.png``, or no file where `numbers` are printed.
     quality : Quality
+    pace : Pace
+        Of a film.
     numbers : bool
         Print the numbers shown, as JSON.
     swept : set of str
-        Parameters that were given explicitly: an animation must not sweep them.
+        Parameters that were given explicitly: a film must not sweep them.
     """
     values = figure.check(params)
     target = (
         None if numbers and output is None else _target(f"{figure.name}.png" if output is None else output)
     )
-    frames = None
-    if target and target.suffix.lower() == ".gif":
-        frames = _time(figure, swept)
-    drawing = figure.draw(**values)
+    ending = target.suffix.lower() if target else ""
+    moving = ending in _film.ENDINGS
     if target:
-        if frames:
-            data = _animation(figure, values, frames, quality)
-        else:
-            data = _still(figure, values, drawing, quality)
-        _write(target, data)
+        quality.check(ending)
+    if pace != _film.ITS_OWN and not moving:
+        raise click.UsageError(
+            f"--seconds and --fps are for films. Write one of {listed(_film.ENDINGS)} with --output"
+        )
+    time = _film.paced(_time(figure, values, ending, swept), ending, pace) if moving else None
+    # A film draws frames of its own.
+    drawing = figure.draw(**values) if numbers or not time else None
+    if target and time:
+        _write(target, _moving(figure, values, time, ending, quality))
+    elif target and drawing:
+        _write(target, _still(figure, values, drawing, ending, quality))
+    if target:
         click.echo(target, err=numbers)
-    if numbers:
+    if numbers and drawing:
         from lietool.golden import numbers as numbers_
 
         click.echo(numbers_.dumps(drawing.numbers), nl=False)
@@ -86,10 +157,10 @@ def _target(output: str) -> Path:
         raise click.UsageError(f"--output {output}: {error.strerror}. Choose another name") from None
     if is_folder:
         raise click.UsageError(
-            f"--output {output or repr('')} is a folder. Write a file name, ending in {' or '.join(ENDINGS)}"
+            f"--output {output or repr('')} is a folder. Write a file name, ending in {listed(ENDINGS)}"
         )
     if path.suffix.lower() not in ENDINGS:
-        raise click.UsageError(f"--output must end in {' or '.join(ENDINGS)}; got {output!r}")
+        raise click.UsageError(f"--output must end in {listed(ENDINGS)}; got {output!r}")
     if not path.parent.is_dir():
         raise click.UsageError(f"--output {output}: there is no folder {path.parent}. Make it first")
     if not os.access(path.parent, os.W_OK | os.X_OK):
@@ -107,70 +178,92 @@ def _write(path: Path, data: bytes) -> None:
         raise click.UsageError(f"cannot write {path}: {reason}. Choose another place with --output") from None
 
 
-def _time(figure: Figure, swept: set[str]) -> Time:
+def listed(endings: tuple[str, ...]) -> str:
+    """Write several endings as one says them: ``.gif, .apng or .mp4``."""
+    return ", ".join(endings[:-1]) + " or " + endings[-1]
+
+
+def _time(figure: Figure, values: Mapping[str, object], ending: str, swept: set[str]) -> Time:
     if figure.time is None:
         raise click.UsageError(f"{figure.name} has no time to animate. Write a .png")
+    for idle in figure.idle(values, [figure.time.param]):
+        raise click.UsageError(
+            f"a {ending} sweeps {idle.option}, which has a part in the picture only {idle.where}. "
+            "Write a .png"
+        )
     if figure.time.param in swept:
         option = "--" + figure.time.param.replace("_", "-")
         raise click.UsageError(
-            f"a .gif sweeps {option}, so it cannot be given too. Leave out {option}, or write a .png"
+            f"a {ending} sweeps {option}, so it cannot be given too. Leave out {option}, or write a .png"
         )
+    if ending == ".mp4":
+        from lietool.render import video
+
+        video.require()
     return figure.time
 
 
-def _still(figure: Figure, values: dict[str, Any], drawing: Drawing, quality: Quality) -> bytes:
+def _still(figure: Figure, values: dict[str, Any], drawing: Drawing, ending: str, quality: Quality) -> bytes:
     from lietool.render import export
 
-    image = _render(drawing, quality)
-    return export.png(image, provenance(figure, values))
+    if ending not in VECTORS:
+        image = _render(drawing.picture, quality)
+        return export.png(image, provenance(figure, values), quality.density)
+    from lietool.render import vector
+
+    picture = drawing.picture
+    return vector.write(
+        picture,
+        "svg" if ending == ".svg" else "pdf",
+        inches=quality.size.inches(picture.size) if quality.size else _size.natural(picture.size),
+        dpi=quality.dpi or _size.DPI,
+        draft=quality.draft,
+        backend=quality.backend,
+        store=_store(),
+        theme=quality.look,
+        about=_about(figure, values),
+    )
 
 
-def _animation(figure: Figure, values: dict[str, Any], time: Time, quality: Quality) -> bytes:
-    from lietool.render import export
+def _moving(figure: Figure, values: dict[str, Any], time: Time, ending: str, quality: Quality) -> bytes:
+    even = ending == ".mp4"
 
-    places = sweep(time)
-    images: dict[float, np.ndarray] = {}
-    # Only somebody who watches wants to see progress.
-    bar = click.progressbar(length=len(set(places)), label=figure.name, file=sys.stderr)
-    with bar if sys.stderr.isatty() else nullcontext() as progress:
-        for place in dict.fromkeys(places):
-            images[place] = _render(figure.draw(**values | {time.param: place}), quality)
-            if progress:
-                progress.update(1)
-    return export.gif([images[place] for place in places], time.seconds)
+    def draw(place: float) -> "Picture":
+        return figure.draw(**values | {time.param: place}).picture
 
+    def render(picture: "Picture") -> "np.ndarray":
+        return _render(picture, quality, even)
 
-def sweep(time: Time) -> list[float]:
-    """Return the values of a figure's time, frame by frame, so that the last leads on to the first.
+    def settle(pictures: list["Picture"]) -> list["Picture"]:
+        from lietool.render import film
 
-    A closed one goes round at constant speed. Another goes forth and back, slows down at both ends,
-    and takes the same values on both ways.
+        return film.settled(pictures, _store(), closed=time.closed)
 
-    Parameters
-    ----------
-    time : Time
-
-    Returns
-    -------
-    list of float
-        One for each frame.
-    """
-    count = time.frames
-    if time.closed:
-        parts = [k / count for k in range(count)]
-    else:
-        parts = [(1.0 - math.cos(2.0 * math.pi * min(k, count - k) / count)) / 2.0 for k in range(count)]
-    return [time.start + (time.stop - time.start) * part for part in parts]
+    return _film.encode(time, ending, draw, settle, render, figure.name, _about(figure, values))
 
 
-def _render(drawing: Drawing, quality: Quality) -> "np.ndarray":
-    from lietool.render import draw, labels
+def _render(picture: "Picture", quality: Quality, even: bool = False) -> "np.ndarray":
+    from lietool.render import draw
+
+    width, height = quality.size.pixels(picture.size) if quality.size else picture.size
+    if even:
+        # The page is centred, so that nobody sees a pixel more.
+        width, height = width + width % 2, height + height % 2
+    return draw.render(
+        picture,
+        size=(width, height),
+        draft=quality.draft,
+        backend=quality.backend,
+        store=_store(),
+        theme=quality.look,
+    ).image
+
+
+def _store() -> "Store":
+    from lietool.render import labels
 
     own = project()
-    store = labels.Store((paths.GOLDEN / "labels", *((own / "golden" / "labels",) if own else ())))
-    return draw.render(
-        drawing.picture, size=quality.size, draft=quality.draft, backend=quality.backend, store=store
-    ).image
+    return labels.Store((paths.GOLDEN / "labels", *((own / "golden" / "labels",) if own else ())))
 
 
 def provenance(figure: Figure, values: Mapping[str, Any]) -> dict[str, str]:
@@ -185,17 +278,22 @@ def provenance(figure: Figure, values: Mapping[str, Any]) -> dict[str, str]:
     Returns
     -------
     dict of str
-        ``Software``, ``command``, ``parameters`` (JSON), ``renderer``; ``plate`` if they are those of one.
+        ``Title``, ``Software``, ``command``, ``parameters`` (JSON), ``renderer``; ``plate`` if they are those
+        of one.
     """
     from lietool.render import context
 
+    return _about(figure, values) | {"renderer": str(context.get().info["renderer"])}
+
+
+def _about(figure: Figure, values: Mapping[str, Any]) -> dict[str, str]:
     texts = {
+        "Title": figure.summary.rstrip("."),
         "Software": f"lietool {lietool.__version__}",
         "command": figure.name,
         "parameters": json.dumps(values, default=str, ensure_ascii=False),
-        "renderer": str(context.get().info["renderer"]),
     }
-    for plate_id in figure.plates:
+    for plate_id, plate in figure.plates.items():
         if figure.plate_params(plate_id) == values:
-            return texts | {"plate": plate_id}
+            return texts | {"Title": plate.title, "plate": plate_id}
     return texts

@@ -18,6 +18,7 @@ import lietool
 from lietool import figure as figure_
 from lietool import paths
 from lietool.figure import Figure, Plate
+from lietool.verbs._size import Size
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,6 +34,10 @@ class Stop(click.ClickException):
         # Click declares it for the class, and reads it from the instance.
         vars(self)["exit_code"] = code
 
+    def __reduce__(self) -> tuple[type["Stop"], tuple[int, str]]:
+        """Let it travel from one process to another, with its code."""
+        return Stop, (self.exit_code, self.message)
+
 
 @dataclass(frozen=True)
 class Item:
@@ -40,6 +45,10 @@ class Item:
 
     id: str
     command: str
+
+    def __reduce__(self) -> tuple[type["Item"], tuple[str, str]]:
+        """Let it travel to another process, which loads the figure for itself."""
+        return Item, (self.id, self.command)
 
     @cached_property
     def figure(self) -> Figure:
@@ -169,13 +178,17 @@ class Studio:
         drawing = item.figure.draw(**item.parameters)
         return Painted(np.zeros((1, 1, 3), np.uint8), drawing.numbers)
 
-    def paint(self, item: Item, *, size: tuple[int, int] | None = None, draft: bool = False) -> Painted:
+    def paint(
+        self, item: Item, *, size: Size | None = None, draft: bool = False, theme: str = "book"
+    ) -> Painted:
         """Draw and render a plate, with labels from its golden folder alone where that has them."""
         from lietool.render import draw, labels
+        from lietool.render.theme import THEMES
 
         drawing = item.figure.draw(**item.parameters)
         store = labels.Store((item.place.labels,))
-        rendered = draw.render(drawing.picture, size=size, draft=draft, store=store)
+        pixels = size.pixels(drawing.picture.size) if size else None
+        rendered = draw.render(drawing.picture, size=pixels, draft=draft, store=store, theme=THEMES[theme])
         fresh = store.fresh
         return Painted(
             rendered.image,

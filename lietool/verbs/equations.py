@@ -19,6 +19,7 @@ from lietool.verbs._equations_index import Equation, Place
 
 LIST = paths.PACKAGE / "verbs" / "equations.toml"
 BUILT = paths.PACKAGE / "verbs" / "equations.json"
+TEX = paths.PACKAGE / "verbs" / "equations_tex.toml"
 _HEADS = {"functions": "function", "tests": "test", "plates": "plate", "errata": "erratum"}
 _STATES = {
     "proved": "a function computes it and a test proves it",
@@ -99,6 +100,7 @@ def describe(equation: Equation) -> dict[str, Any]:
         "text": _equations_index.TEXTS[equation.number[0]],
         "says": equation.says,
         "formula": equation.formula,
+        "tex": tex()[equation.number],
         "state": equation.state,
     }
     if equation.awaited:
@@ -130,6 +132,13 @@ def example(equation: Equation) -> list[tuple[str, str]]:
 @functools.cache
 def _examples() -> dict[str, list[str]]:
     return tomllib.loads(LIST.read_text(encoding="utf-8"))["examples"]
+
+
+@functools.cache
+def tex() -> dict[str, str]:
+    """Return the equations in TeX, by their numbers with the letter of their text."""
+    listed = tomllib.loads(TEX.read_text(encoding="utf-8"))
+    return {f"{text} {number}": line for text, lines in listed.items() for number, line in lines.items()}
 
 
 def _key(words: str) -> str:

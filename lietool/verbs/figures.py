@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from lietool.verbs import _command, _studio, _table
+from lietool.verbs import _command, _picture, _size, _studio, _table
 
 _IDS = click.argument("ids", nargs=-1, metavar="[IDS]...")
 _JSON = click.option("--json", "as_json", is_flag=True, help="Print what a program may read.")
@@ -18,6 +18,15 @@ _OUT = click.option(
     default=Path("out"),
     show_default=True,
     help="Folder for what is made.",
+)
+_JOBS = click.option(
+    "-j",
+    "--jobs",
+    type=click.IntRange(1, 64),
+    metavar="N",
+    default=1,
+    show_default=True,
+    help="How many processes share the work.",
 )
 
 
@@ -70,10 +79,20 @@ def show(plate: str, as_json: bool) -> None:
 @_IDS
 @_OUT
 @click.option("--draft", is_flag=True, help="2x2 samples a pixel instead of 3x3; not compared.")
-@click.option("--size", metavar="WxH", type=_command._Size(), help="Pixels; not compared.")
+@click.option("--theme", type=_command.THEME, default="book", help="Any but book is not compared.")
+@click.option("--size", metavar="SIZE", type=_command.SIZE, help="Pixels or a length, 8.5cm; not compared.")
+@click.option("--dpi", metavar="N", type=_command.DPI, help="Dots per inch, where --size is a length.")
+@_JOBS
 @_JSON
 def build(
-    ids: tuple[str, ...], folder: Path, draft: bool, size: tuple[int, int] | None, as_json: bool
+    ids: tuple[str, ...],
+    folder: Path,
+    draft: bool,
+    theme: str,
+    size: _size.Size | None,
+    dpi: float | None,
+    jobs: int,
+    as_json: bool,
 ) -> None:
     """Make the pictures and compare them.
 
@@ -82,15 +101,18 @@ def build(
     """
     from lietool.verbs import _figures_build
 
-    _figures_build.run(_studio.items(ids), _studio.current(), folder, size, draft, as_json)
+    quality = _picture.Quality(size, dpi, theme, draft)
+    quality.check(".png")
+    _figures_build.run(_studio.items(ids), _studio.current(), folder, quality, as_json, jobs)
 
 
 @command.command()
 @_IDS
 @_OUT
+@_JOBS
 @_JSON
 @click.pass_context
-def verify(context: click.Context, ids: tuple[str, ...], folder: Path, as_json: bool) -> None:
+def verify(context: click.Context, ids: tuple[str, ...], folder: Path, jobs: int, as_json: bool) -> None:
     """Judge pictures and numbers by their goldens.
 
     A golden is never written by this.
@@ -104,7 +126,9 @@ def verify(context: click.Context, ids: tuple[str, ...], folder: Path, as_json: 
 
     items = _studio.items(ids)
     context.exit(
-        _figures_verify.run(items, _studio.current(), folder / "failed", as_json, everything=not ids)
+        _figures_verify.run(
+            items, _studio.current(), folder / "failed", as_json, everything=not ids, jobs=jobs
+        )
     )
 
 
@@ -126,6 +150,38 @@ def accept(ids: tuple[str, ...], reason: str | None, everything: bool) -> None:
     if bool(ids) == everything:
         raise click.UsageError("accept needs plates, or --all for all of them, not both.")
     _figures_accept.run(_studio.items(ids), _studio.current(), " ".join(reason.split()))
+
+
+@command.command()
+@_IDS
+@click.option(
+    "-o",
+    "--output",
+    "folder",
+    type=click.Path(path_type=Path),
+    default=Path("out/gallery"),
+    show_default=True,
+    help="Folder for the page.",
+)
+@click.option("--golden", is_flag=True, help="Take the accepted pictures and draw nothing.")
+@click.option("--readme", is_flag=True, help="Renew the README.md beside the goldens instead.")
+@_JOBS
+def gallery(ids: tuple[str, ...], folder: Path, golden: bool, readme: bool, jobs: int) -> None:
+    """Make a page of the plates, to open in a browser.
+
+    With pictures drawn now, light and dark, captions, equations, commands,
+    parameters and numbers; it needs no network.  A folder that holds an older
+    page is renewed, one that holds anything else is refused.
+    """
+    from lietool.verbs import _figures_gallery
+
+    if not readme:
+        _figures_gallery.run(_studio.items(ids), _studio.current(), folder, golden=golden, jobs=jobs)
+        return
+    if ids or golden:
+        raise click.UsageError("--readme is for all plates. Leave out the others and --golden")
+    changed = _figures_gallery.write_readme(_studio.items())
+    click.echo("\n".join(map(str, changed)) or "nothing has changed")
 
 
 def _state(item: _studio.Item) -> str:

@@ -25,6 +25,7 @@ from lietool.render.scene import (
     Tube,
     View,
 )
+from lietool.render.theme import BOOK
 
 CAMERA = Camera((1.0, 0.0, 0.0), height=2.0)
 SQUARE = np.array([[0, 1, 2], [0, 2, 3]])
@@ -77,12 +78,12 @@ class TestColours:
     def test_half_transparent_is_half_the_light(self):
         # Black at one half over white is linear 0.5: 1.055 * 0.5^(1 / 2.4) - 0.055 = 0.73536 = 187.5 / 255.
         assert page(rectangle(0, 0, 64, 48, "#000000", 0.5))[20, 20].tolist() == [188] * 3
-        color, alpha = style.linear("#2b66b1")[:3], 0.3
+        color, alpha = BOOK.linear("#2b66b1")[:3], 0.3
         image = page(rectangle(0, 0, 64, 48, "#2b66b1", alpha))
         assert np.abs(image[20, 20] - srgb(alpha * color + (1 - alpha))).max() <= 1
 
     def test_colours_of_vertices_are_mixed_in_linear_light(self):
-        black, white = style.linear("#000000"), style.linear("#ffffff")
+        black, white = BOOK.linear("#000000"), BOOK.linear("#ffffff")
         ramp = np.array([black, white, white, black])
         image = page(Surface([(0, 0, 0), (64, 0, 0), (64, 48, 0), (0, 48, 0)], SQUARE, ramp, material="flat"))
         assert np.abs(image[24, :, 0] - srgb((np.arange(64) + 0.5) / 64)).max() <= 1
@@ -124,7 +125,7 @@ class TestDepth:
         near, far = across(0.3, 0.5, "#c8372d", 0.5), across(-0.3, 0.8, "#2b66b1", 0.4)
         image = seen(near, far)
         assert np.array_equal(image, seen(far, near))
-        red, blue = style.linear("#c8372d")[:3], style.linear("#2b66b1")[:3]
+        red, blue = BOOK.linear("#c8372d")[:3], BOOK.linear("#2b66b1")[:3]
         wanted = srgb(0.5 * red + 0.5 * (0.4 * blue + 0.6))
         assert np.abs(image[30, 30] - wanted).max() <= 1
 
@@ -433,7 +434,7 @@ class TestRefused:
             ({"faces": [(0, 1, 3)]}, "faces must be indices of its 3 vertices, from 0; got 0 to 3"),
             ({"faces": [(0, 1, -1)]}, "faces must be indices of its 3 vertices, from 0; got -1 to 1"),
             ({"faces": [(0, 1, 1.5)]}, r"faces must be whole numbers \(n, 3\); got float64 \(1, 3\)"),
-            ({"material": "wood"}, "material must be one of flat, matte, glass; got 'wood'"),
+            ({"material": "wood"}, "material must be one of flat, matte, glass, soft; got 'wood'"),
         ],
     )
     def test_a_surface_that_is_none(self, changed, message):
@@ -534,3 +535,43 @@ def test_memory_does_not_grow():
     before, after = map(int, done.stdout.split())
     # A picture's triangles and buffers are some 5 MB: thirty that stay would be 150.
     assert after - before < 50
+
+
+class TestLayer:
+    """One view alone, on no ground: over the paper it is the picture."""
+
+    @pytest.mark.parametrize(
+        "record",
+        [
+            Lines([(0, -2.0, -0.7), (0, 0.9, 0.5)], "#c8372d", 30.0),
+            Points([(0, 0.2, 0.1), (0, 1.3, 0.0)], "#2b66b1", 25.0),
+            across(0.0, 0.4, "#2b66b1", 0.5),
+            Surface(*solids.sphere(0.5)[:2], style.GLASS, solids.sphere(0.5)[2], "glass"),
+            Label("$x$", (0, 0, 0), "#000000"),
+        ],
+    )
+    def test_over_paper(self, record):
+        # The box is small, and what is drawn leaves it.
+        view = View((record,), CAMERA, (40.0, 30.0, 40.0, 30.0))
+        picture = Picture((view,), (120, 90))
+        samples = draw.layer(picture, view, size=(240, 180)).astype(float)
+        light = samples[..., :3] + (1.0 - samples[..., 3:])
+        shown = 255.0 * np.where(
+            light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 0.0) ** (1 / 2.4) - 0.055
+        )
+        bare = Picture(
+            (View(tuple(r for r in view.records if not isinstance(r, Label)), CAMERA, view.box),), (120, 90)
+        )
+        expected = draw.render(bare, size=(240, 180)).image
+        # A pixel on an edge may be rounded otherwise, and one brighter than paper is cut off earlier.
+        off = np.abs(shown - expected).max(axis=-1)
+        assert np.count_nonzero(off > 2.0) <= 25 and np.count_nonzero(off > 8.0) <= 3
+        assert samples[..., 3].any() == (not isinstance(record, Label))
+
+    def test_nothing_in_the_view(self):
+        view = View((Points([(0, 50.0, 0)], "#000000", 3.0),), CAMERA)
+        assert not draw.layer(Picture((view,), (60, 40)), view, size=(60, 40)).any()
+
+    def test_a_size_that_is_none(self):
+        with pytest.raises(ValueError, match=r"draw\.render: size must be 1 to 20000"):
+            draw.layer(Picture((), (60, 40)), View(()), size=(0, 40))

@@ -34,6 +34,26 @@ def test_png_keeps_pixels_and_texts() -> None:
         assert np.array_equal(np.array(found), image)
 
 
+def test_png_knows_its_dots_per_inch() -> None:
+    for dpi in (72.0, 300.0):
+        with Image.open(io.BytesIO(export.png(_frames(1)[0], {}, dpi))) as found:
+            assert found.info["dpi"] == pytest.approx((dpi, dpi), abs=0.02)
+
+
+def test_apng_keeps_every_pixel_and_the_time() -> None:
+    frames = _frames(7)
+    data = export.apng([*frames, frames[3]], 1.0, {"Title": "a ball"})
+    with Image.open(io.BytesIO(data)) as image:
+        assert image.info["loop"] == 0 and image.info["Title"] == "a ball"
+        found = [np.array(frame.convert("RGB")) for frame in ImageSequence.Iterator(image)]
+        durations = []
+        for k in range(8):
+            image.seek(k)
+            durations.append(image.info["duration"])
+    assert all(map(np.array_equal, found, [*frames, frames[3]]))
+    assert sum(durations) == 1000.0 and max(durations) - min(durations) <= 1.0
+
+
 def test_gif_does_not_flicker() -> None:
     frames = _frames(10)
     found = _read(export.gif(frames, 1.0))
@@ -82,6 +102,8 @@ def test_what_is_no_image_is_refused(image: np.ndarray) -> None:
         export.png(image, {})
     with pytest.raises(ValueError, match=r"export\.gif: image must be uint8 \(h, w, 3\)"):
         export.gif([image], 1.0)
+    with pytest.raises(ValueError, match=r"export\.apng: image must be uint8 \(h, w, 3\)"):
+        export.apng([image], 1.0, {})
 
 
 def test_gif_needs_frames_of_one_shape() -> None:

@@ -1,4 +1,4 @@
-"""Plots: numbers as text, values on the page, the records of a frame; and the colours of the style."""
+"""Plots: numbers as text, values on the page, the records of a frame."""
 
 import numpy as np
 import pytest
@@ -86,45 +86,3 @@ class TestAxes:
 
     def test_a_vertical_line(self):
         assert np.asarray(AXES.vertical(1.0, style.RULE).points).tolist() == [[400, 200, 0], [400, 300, 0]]
-
-
-COLORS = {
-    name: value for name, value in vars(style).items() if isinstance(value, str) and value.startswith("#")
-}
-
-
-class TestStyle:
-    def test_linear(self):
-        assert style.linear("#ffffff").tolist() == [1, 1, 1, 1] and style.linear("#000000", 0.5).tolist() == [
-            0,
-            0,
-            0,
-            0.5,
-        ]
-        # 0x80 of sRGB is 21.6 % of the light.
-        assert style.linear("#808080")[:3] == pytest.approx([0.2158605] * 3, abs=1e-7)
-
-    def test_ramp(self):
-        stops = style.ramp(np.array([0.0, 0.5, 1.0]), ("#000000", "#ff0000", "#ffffff"))
-        assert stops.tolist() == [[0, 0, 0, 1], [1, 0, 0, 1], [1, 1, 1, 1]]
-        assert style.ramp(np.array([0.25]), ("#000000", "#ffffff"))[0, 0] == pytest.approx(0.25)
-
-    def test_every_colour_is_one(self):
-        assert len(COLORS) > 10
-        for name, value in COLORS.items():
-            assert len(value) == 7 and int(value[1:], 16) >= 0, name
-
-    @pytest.mark.parametrize(
-        "name", sorted(n for n in COLORS if n in ("INK", "MUTED") or n.endswith("_TEXT"))
-    )
-    def test_text_can_be_read_on_paper(self, name):
-        paper, text = (self.luminance(c) for c in (style.PAPER, COLORS[name]))
-        # The contrast that WCAG asks of text of any size.
-        assert (paper + 0.05) / (text + 0.05) >= 4.5
-
-    def luminance(self, color: str) -> float:
-        return float(style.linear(color)[:3] @ (0.2126, 0.7152, 0.0722))
-
-    def test_the_axes_keep_apart_in_grey(self):
-        lightness = sorted(116 * self.luminance(color) ** (1 / 3) - 16 for color in style.AXES)
-        assert np.diff(lightness).min() > 10

@@ -1,0 +1,56 @@
+"""Parameters that have a part in some pictures of a command only: as declared, tried by experiment."""
+
+import numpy as np
+import pytest
+
+from lietool import figure, paths
+from lietool.declaration import Figure
+from lietool.golden import numbers
+from lietool.parameter import Parameter
+
+COMMANDS = list(dict.fromkeys(figure.plates((paths.FIGURES,)).values()))
+
+
+def printed(loaded: Figure, params: dict[str, object]) -> str:
+    """All that a drawing is, as text; or why there is none."""
+    try:
+        drawing = loaded.draw(**params)
+    except ValueError as error:
+        return str(error)
+    with np.printoptions(threshold=10**7, precision=12):
+        return numbers.dumps(drawing.numbers) + repr(drawing.picture)
+
+
+def others(parameter: Parameter, value: object) -> list[object]:
+    """Other values of a parameter, of no particular kind."""
+    param = parameter.param
+    if parameter.kind in ("float", "int"):
+        assert param.low is not None and param.high is not None
+        span = param.high - param.low
+        kind = float if parameter.kind == "float" else int
+        return [kind(param.low + part * span) for part in (0.37, 0.71, 0.93)]
+    if parameter.kind == "vector":
+        return [tuple(0.7 * x + 0.13 * (i + 1) for i, x in enumerate(value))]  # type: ignore[arg-type]
+    return list(param.choices) or ["SO,GL"]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_what_has_a_part_is_said(name):
+    loaded = figure.load(name, (paths.FIGURES,))
+    selectors = {p.param.only[0] for p in loaded.parameters if p.param.only} or {
+        p.name for p in loaded.parameters if p.name in ("view", "kind", "group", "diagram")
+    }
+    for selector in (p for p in loaded.parameters if p.name in selectors):
+        for choice in selector.param.choices:
+            mine = [i for i in loaded.plates if loaded.plate_params(i)[selector.name] == choice]
+            base = loaded.plate_params(mine[0]) if mine else loaded.check({selector.name: choice})
+            before = printed(loaded, base)
+            for parameter in loaded.parameters:
+                if parameter is selector:
+                    continue
+                tried = (
+                    printed(loaded, base | {parameter.name: value})
+                    for value in others(parameter, base[parameter.name])
+                )
+                has_part = any(text != before for text in tried)
+                assert has_part != parameter.idle(base), (parameter.name, choice)
