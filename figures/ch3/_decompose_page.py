@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 
 from lietool.lie import so2
-from lietool.render import scene, style
+from lietool.render import brackets, scene, style
 from lietool.render.plane import Plane, arc, moved, path
 
 from . import _decompose_layout as layouts
@@ -201,7 +201,7 @@ def _stretched(place: Plane, stage: Stage, others: np.ndarray) -> list[scene.Rec
 def _said(step: Step, d: np.ndarray) -> tuple[str, ...]:
     """What a step amounts to, in one line or two."""
     if step.kind == "stretch":
-        return tuple(rf"$\sigma_{i + 1} = {factors.fixed(d[i])}$" for i in range(2))
+        return tuple(rf"$\sigma_{i + 1} = {brackets.fixed(d[i])}$" for i in range(2))
     angle = rf"{round(np.degrees(step.angle), 1) + 0.0:.1f}^{{\circ}}"
     if step.kind == "flip":
         return r"$\mathrm{mirror\ at}$", f"${angle}$"

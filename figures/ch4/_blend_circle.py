@@ -9,15 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from lietool.lie import so2
-from lietool.render import scene, style
+from lietool.render import ring, scene, style
 from lietool.render.camera import Box
-from lietool.render.plane import Plane, direction
-
-from . import _blend_cone as cone
+from lietool.render.plane import Plane
 
 # Where the rotated glyphs stand, in radii of the circle, and how far a second turn stands out.
 _OUTSIDE, _OPENING = 1.34, 0.12
-_GLYPH = 0.42
 _TICK = np.array([[0.0, -9.0, 0.0], [0.0, 9.0, 0.0]])
 # The way between the ends, over the circle or the line that it is a part of.
 _BOLD = 1.6 * style.CURVE
@@ -44,16 +41,6 @@ class Turns:
         return so2.exp(self.angles(t))
 
 
-def drawn(M: np.ndarray) -> np.ndarray:
-    """Return where matrices [[a, -b], [b, a]] (..., 2, 2) are drawn: (b, -a), so that I is lowest."""
-    return np.stack([M[..., 1, 0], -M[..., 0, 0]], axis=-1)
-
-
-def _toward(angle: np.ndarray | float) -> np.ndarray:
-    """Where rotations are drawn, by their angles."""
-    return drawn(so2.exp(angle))
-
-
 def records(
     ends: Turns, times: np.ndarray, t: float, beyond: float, box: Box, curved: bool
 ) -> list[scene.Record]:
@@ -61,17 +48,17 @@ def records(
     reach = _OUTSIDE + (0.26 if curved else 0.18)
     place = Plane((box[0] + box[2] / 2.0, box[1] + box[3] / 2.0), min(box[2], box[3]) / 2.0 / reach)
     found: list[scene.Record] = [
-        scene.Surface(*_disc(place), style.GROUP, material="flat", alpha=0.05),
+        scene.Surface(*ring.disc(place), style.GROUP, material="flat", alpha=0.05),
         place.circle((0.0, 0.0), 1.0, style.GROUP_TEXT, style.EDGE),
     ]
-    chord = drawn(ends.linear(np.array([0.0, 1.0])))
+    chord = ring.drawn(ends.linear(np.array([0.0, 1.0])))
     if curved:
         found.append(place.line(chord, style.MUTED, style.EDGE, dash=(8.0, 6.0)))
         found += _arc(place, ends, times)
     else:
         span = np.linspace(-beyond, 1.0 + beyond, 241)
-        near = np.linalg.norm(drawn(ends.linear(span)), axis=-1) <= reach
-        found.append(place.line(drawn(ends.linear(span[near])), style.WRONG, style.EDGE))
+        near = np.linalg.norm(ring.drawn(ends.linear(span)), axis=-1) <= reach
+        found.append(place.line(ring.drawn(ends.linear(span[near])), style.WRONG, style.EDGE))
         found.append(place.line(chord, style.WRONG, _BOLD))
         found += _shrunken(place, ends, times)
     found.append(place.dots([(0.0, 0.0), (0.0, -1.0)], style.INK, 5.0))
@@ -80,15 +67,9 @@ def records(
     return found + _marks(place, ends, times, t, curved)
 
 
-def _disc(place: Plane) -> tuple[np.ndarray, np.ndarray]:
-    rim = direction(np.linspace(0.0, 2.0 * np.pi, 121))
-    n = np.arange(1, 121)
-    return place.at(np.concatenate([[[0.0, 0.0]], rim])), np.stack([0 * n, n, n + 1], axis=-1)
-
-
 def _off(ends: Turns) -> np.ndarray:
     """The unit vector across the chord, away from the middle of the circle."""
-    chord = drawn(ends.linear(np.array([0.0, 1.0])))
+    chord = ring.drawn(ends.linear(np.array([0.0, 1.0])))
     middle, along = chord.mean(axis=0), chord[1] - chord[0]
     if np.linalg.norm(along) < 1e-9:
         return middle
@@ -99,40 +80,21 @@ def _off(ends: Turns) -> np.ndarray:
 def _shrunken(place: Plane, ends: Turns, times: np.ndarray) -> list[scene.Record]:
     """The glyph under each blend, on a stem: inside the circle, those of the ends outside."""
     blends, off = ends.linear(times), _off(ends)
-    points = drawn(blends)
+    points = ring.drawn(blends)
     apart = float(np.linalg.norm(points[-1] - points[0])) / (len(times) - 1)
     if apart < 1e-9:
         blends, points, times = blends[[0, -1]], points[[0, -1]], times[[0, -1]]
-    size = _size(1.25 * apart, 0.16)
+    size = ring.size(1.25 * apart, 0.16)
     found: list[scene.Record] = []
-    for k, (at, M, (fill, edge)) in enumerate(zip(points, blends, cone.colors(len(times)), strict=True)):
+    for k, (at, M, (fill, edge)) in enumerate(zip(points, blends, style.stages(len(times)), strict=True)):
         if 0 < k < len(times) - 1:
             middle = at - 0.30 * off
         else:
             # Away from where the chord goes on.
             side = float(np.sign(at[0] * off[1] - at[1] * off[0]))
             middle = _OUTSIDE * so2.exp(0.30 * side) @ at
-        found += _held(place, at, middle, M, size, fill, edge)
+        found += ring.held(place, at, middle, M, size, fill, edge)
     return found
-
-
-def _held(
-    place: Plane, at: np.ndarray, middle: np.ndarray, M: np.ndarray, size: float, fill: str, edge: str
-) -> list[scene.Record]:
-    """The glyph under a matrix in some place, on a stem from where the matrix is."""
-    moved = np.eye(3)
-    moved[:2, :2], moved[:2, 2] = M, middle
-    away = at - middle
-    part = min(0.45 * size * float(np.linalg.norm(M[0])) / float(np.linalg.norm(away)), 1.0)
-    return [
-        place.line(np.stack([at, middle + part * away]), edge, style.THIN),
-        *place.glyph(moved, fill, edge, size=size, width=style.THIN),
-    ]
-
-
-def _size(apart: float, least: float) -> float:
-    """The height of glyphs that far from each other; those at one place may be as large as any."""
-    return min(_GLYPH, max(0.85 * apart, least)) if apart > 1e-9 else _GLYPH
 
 
 def _arc(place: Plane, ends: Turns, times: np.ndarray) -> list[scene.Record]:
@@ -140,19 +102,19 @@ def _arc(place: Plane, ends: Turns, times: np.ndarray) -> list[scene.Record]:
     turn = ends.angle1 - ends.angle0
     start = ends.angle0 - np.pi / 2.0
     found = place.turn((0.0, 0.0), 1.0, start, turn, style.GROUP, width=_BOLD, head=False)
-    size = _size(_OUTSIDE * abs(turn) / (len(times) - 1), 0.12)
+    size = ring.size(_OUTSIDE * abs(turn) / (len(times) - 1), 0.12)
     angles = ends.angles(times)
-    for angle, (fill, edge) in zip(angles, cone.colors(len(times)), strict=True):
+    for angle, (fill, edge) in zip(angles, style.stages(len(times)), strict=True):
         extra = max(abs(angle - ends.angle0) / (2.0 * np.pi) - 1.0, 0.0)
-        at = _toward(angle)
-        found += _held(place, at, (_OUTSIDE + _OPENING * extra) * at, so2.exp(angle), size, fill, edge)
+        at = ring.toward(angle)
+        found += ring.held(place, at, (_OUTSIDE + _OPENING * extra) * at, so2.exp(angle), size, fill, edge)
     return found
 
 
 def _marks(place: Plane, ends: Turns, times: np.ndarray, t: float, curved: bool) -> list[scene.Record]:
     """The steps, the marked moment and the names."""
     way, color = (ends.curved, style.GROUP) if curved else (ends.linear, style.WRONG)
-    steps, on = drawn(way(times)), drawn(way(np.array([t])))[0]
+    steps, on = ring.drawn(way(times)), ring.drawn(way(np.array([t])))[0]
     found: list[scene.Record] = [place.dots(steps, color, 7.0)]
     if not curved:
         found.append(place.dots(steps[[0, -1]], style.GROUP_TEXT, 8.0))
@@ -162,7 +124,7 @@ def _marks(place: Plane, ends: Turns, times: np.ndarray, t: float, curved: bool)
     else:
         found.append(place.beyond("$M(t)$", on, _off(ends), color=style.WRONG, gap=36.0, room=60.0))
     for angle, name, k in ((ends.angle0, "$R_0$", 0.0), (ends.angle1, "$R_1$", 1.0)):
-        at = _toward(angle)
+        at = ring.toward(angle)
         if not curved or abs(t - k) > 0.08:
             found.append(place.beyond(name, at, -at if curved else at - _off(ends), gap=36.0, room=60.0))
     return found

@@ -127,3 +127,9 @@ def fade(color: str | Mix, alpha: ArrayLike) -> Mix:
     if isinstance(color, Mix):
         return Mix(color.tones, color.weights, color.alpha * alpha)
     return Mix((color,), np.ones((len(alpha), 1)), alpha)
+
+
+def stages(count: int) -> tuple[tuple[str, str], ...]:
+    """Return fill and edge for shapes from first to last: before, on the way, after."""
+    between = ((BETWEEN, BETWEEN_EDGE),) * max(count - 2, 0)
+    return ((BEFORE, BEFORE_EDGE), *between, (AFTER, AFTER_EDGE))[:count]

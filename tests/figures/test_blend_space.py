@@ -93,10 +93,12 @@ class TestPage:
     def test_angles_grow_to_the_right_on_the_circle_and_below_it(self):
         from lietool.figures.ch4 import _blend_circle as circle
 
+        from lietool.render import ring
+
         ends = circle.Turns(*np.deg2rad([-70.0, 50.0]))
-        points = circle.drawn(ends.curved(np.linspace(0.0, 1.0, 5)))
+        points = ring.drawn(ends.curved(np.linspace(0.0, 1.0, 5)))
         assert (np.diff(points[:, 0]) > 0.0).all()
-        assert circle.drawn(np.eye(2)) == pytest.approx([0.0, -1.0])
+        assert ring.drawn(np.eye(2)) == pytest.approx([0.0, -1.0])
 
     def test_both_plates_have_one_cone(self, plate):
         first, second = (plate(name).drawing.picture.views[0] for name in ("B4.3", "B4.4"))
