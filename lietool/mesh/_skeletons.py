@@ -23,10 +23,10 @@ class Bone:
 
 @dataclass(frozen=True)
 class Pose:
-    """Turns of bones, degrees, and where the root's first joint goes."""
+    """Turns of bones, degrees, and where the middle between nose and tail goes."""
 
     turns: Mapping[str, float]
-    root: tuple[float, float] = (0.0, 0.0)
+    middle: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def snake() -> Skeleton:
         Bone("snout", "head", (0.62, 0.0), (0.92, 0.0), (0.26, 0.15)),
         *_chain("link", "head", joints, thick),
     ]
-    source = {"head": 90.0} | _steps(24.0 * np.sin(2.0 * np.pi * (2.0 * at[1:] - 0.0)))
+    source = {"head": 90.0} | _steps(58.0 * np.sin(4.0 * np.pi * at[1:]))
     target = {"head": 90.0} | _steps(_coil(9.0))
     marks = {"nose": (1.06, 0.0), "tail": (-9.04, 0.0), "eye left": (0.66, 0.14), "eye right": (0.66, -0.14)}
     return Skeleton(tuple(bones), (Pose(source), Pose(target)), 0.165, 0.05, marks)
@@ -137,6 +137,26 @@ def _coil(length: float) -> np.ndarray:
 def _steps(direction: np.ndarray) -> dict[str, float]:
     """The turns of the links that give them these directions."""
     return {f"link{k + 1}": float(turn) for k, turn in enumerate(np.diff(direction, prepend=0.0))}
+
+
+def fish() -> Skeleton:
+    """Seen from above; slender, it turns away and bends."""
+    at = np.linspace(0.0, 1.0, 13)
+    thick = np.interp(at, [0.0, 0.12, 0.3, 0.55, 0.8, 1.0], [0.20, 0.27, 0.30, 0.24, 0.13, 0.085])
+    bones = _chain("back", "", _row(1.5, -2.1, 12), thick.tolist())
+    for side, y in (("left", 1.0), ("right", -1.0)):
+        fin = [(0.74, 0.20 * y), (0.50, 0.50 * y), (0.26, 0.66 * y)]
+        bones += _chain(f"fin {side}", "back3", fin, [0.10, 0.11, 0.05])
+        lobe = [(-2.1, 0.02 * y), (-2.42, 0.15 * y), (-2.78, 0.34 * y)]
+        bones += _chain(f"lobe {side}", "back12", lobe, [0.09, 0.10, 0.035])
+    bend = np.array([0.0, 0.0, 2.0, 4.0, 6.0, 8.0, 9.0, 10.0, 10.0, 10.0, 9.0, 8.0])
+    source = {f"back{k + 1}": float(turn) for k, turn in enumerate(-0.5 * bend)} | {"back1": 110.0}
+    target = {f"back{k + 1}": float(turn) for k, turn in enumerate(bend)} | {"back1": 190.0}
+    source |= {"lobe left1": -8.0, "lobe right1": -8.0}
+    target |= {"lobe left1": 12.0, "lobe right1": 12.0, "fin left1": 12.0, "fin right1": 14.0}
+    marks = {"nose": (1.70, 0.0), "tail": (-2.19, 0.0), "eye left": (1.28, 0.17), "eye right": (1.28, -0.17)}
+    marks |= {"lobe left": (-2.81, 0.36), "lobe right": (-2.81, -0.36)}
+    return Skeleton(tuple(bones), (Pose(source), Pose(target)), 0.10, 0.04, marks)
 
 
 def cat() -> Skeleton:

@@ -1,4 +1,4 @@
-"""Shapes of our own in two poses, with one triangulation for both: a gecko, a snake and a cat.
+"""Shapes of our own in two poses, with one triangulation for both: a gecko, a snake, a cat and a fish.
 
 A shape is a skeleton with flesh round its bones.  It is meshed once, at rest, and posed twice by turning
 its bones; the flesh follows the bones near it (linear blend skinning).  The two poses therefore have the same
@@ -69,13 +69,19 @@ def cat() -> Shape:
     return _shape(skeletons.cat())
 
 
-SHAPES: dict[str, Callable[[], Shape]] = {"gecko": gecko, "snake": snake, "cat": cat}
+@cache
+def fish() -> Shape:
+    """Return a slender fish, seen from above, that turns away and bends."""
+    return _shape(skeletons.fish())
+
+
+SHAPES: dict[str, Callable[[], Shape]] = {"gecko": gecko, "snake": snake, "cat": cat, "fish": fish}
 
 
 def _shape(skeleton: Skeleton) -> Shape:
     rest, faces, marks = _mesh(skeleton)
     weights = _weights(skeleton, rest)
-    source, target = (_posed(skeleton, pose, rest, weights) for pose in skeleton.poses)
+    source, target = (_posed(skeleton, pose, rest, weights, marks) for pose in skeleton.poses)
     x = rest[:, 0]
     along = (x.max() - x) / np.ptp(x)
     for array in (source, target, faces, along):
@@ -189,11 +195,13 @@ def _weights(skeleton: Skeleton, points: Array) -> Array:
     return share / share.sum(axis=0)
 
 
-def _posed(skeleton: Skeleton, pose: Pose, points: Array, weights: Array) -> Array:
+def _posed(
+    skeleton: Skeleton, pose: Pose, points: Array, weights: Array, marks: Mapping[str, int]
+) -> Array:
     """Points after all bones have turned: each goes where its bones, by their weights, take it."""
     motion: dict[str, tuple[complex, complex]] = {}
     for bone in skeleton.bones:
-        turn, shift = motion[bone.parent] if bone.parent else (1.0 + 0.0j, complex(*pose.root))
+        turn, shift = motion[bone.parent] if bone.parent else (1.0 + 0.0j, 0.0j)
         joint = complex(*bone.start)
         own = np.exp(1j * np.radians(pose.turns.get(bone.name, 0.0)))
         # z -> turn (joint + own (z - joint)) + shift
@@ -201,4 +209,5 @@ def _posed(skeleton: Skeleton, pose: Pose, points: Array, weights: Array) -> Arr
     turns, shifts = np.array([motion[bone.name] for bone in skeleton.bones]).T
     z = points[:, 0] + 1j * points[:, 1]
     moved = np.sum(weights * (turns[:, None] * z + shifts[:, None]), axis=0)
+    moved += complex(*pose.middle) - 0.5 * (moved[marks["nose"]] + moved[marks["tail"]])
     return np.stack([moved.real, moved.imag], axis=1)
