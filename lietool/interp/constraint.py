@@ -10,6 +10,7 @@ an edge has only its direction given is a real condition.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -162,6 +163,25 @@ class Rows:
     values: NDArray[np.complex128]
     weights: Array
     real: NDArray[np.bool_]
+
+    @cached_property
+    def kinds(self) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+        """The conditions that take a vertex out, that go into the matrix, and that stand beside it."""
+        count = np.array([len(c) for c in self.columns], int)
+        exact = np.isinf(self.weights)
+        fixed, soft = (count == 1) & exact, (count > 0) & ~exact & ~self.real
+        every = np.arange(len(count))
+        return every[fixed], every[soft], every[~(fixed | soft)]
+
+    @property
+    def held(self) -> NDArray[np.intp]:
+        """The vertices that are taken out."""
+        return np.array([self.columns[k][0] for k in self.kinds[0]], np.intp)
+
+    def factor(self, condition: int, frame: int) -> NDArray[np.complex128]:
+        """Return what the vertices of a condition are multiplied with at one of the times."""
+        factor = self.factors[condition]
+        return factor[frame if len(factor) > 1 else 0]
 
 
 def rows(constraints: Sequence[Constraint], count: int, t: Array) -> Rows:

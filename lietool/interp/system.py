@@ -6,12 +6,16 @@ The minimum of v* H v - 2 Re(v* b) under conditions U v = d is
 
 with Delta = 0 for an exact condition and 1/c for one of weight c.  Vertices that follow a path exactly are
 taken out, conditions on few vertices with a weight go into H, and the others stand beside the matrix: they
-are few, and each costs one more right side.  A condition on a direction is real, and then the system is written in x and y.
+are few, and each costs one more right side.  A condition on a direction is real, and then the system is
+written in x and y.
 
 Where nothing in H holds a part of the shape, anchors do: a weight on one or two vertices, which a further
 condition takes back again, so that H can be factored whatever holds the shape.
 
-The order of elimination is found once.  With it the factors of a new frame have the pattern of the old.
+Where the matrix changes with every frame the order of elimination is found once, and with it the factors of
+a new frame have the pattern of the old.  Of the solvers that were tried SuperLU, with a panel of one column,
+is the fastest for these small and very sparse factors, and the only one that takes complex matrices as they
+are: see `lietool bench interp --solvers`.
 """
 
 from dataclasses import dataclass
@@ -20,12 +24,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lietool.interp.constraint import Rows
 from lietool.interp.terms import Pattern
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Index = NDArray[np.intp]
+Places = tuple[Index, NDArray[np.int32], NDArray[np.int32]]
+
+GOOD = 1e-13
+"""A solution with a larger relative residual is improved once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +45,10 @@ class Layout:
         Vertices.
     real : bool
         Unknowns are x and y of all vertices, not complex numbers.
+    ordered : bool
+        Whether the free unknowns are in the order of elimination.
     free, fixed : ndarray of int
-        The unknowns that are solved for, in the order of elimination, and those that are given.
+        The unknowns that are solved for, and those that are given.
     inner, cross : tuple of ndarray
         Positions in the source of entries, row indices and column pointers of the matrix among the free
         unknowns, and from the fixed to the free.
@@ -47,175 +56,187 @@ class Layout:
 
     count: int
     real: bool
+    ordered: bool
     free: Index
     fixed: Index
-    inner: tuple[Index, NDArray[np.int32], NDArray[np.int32]]
-    cross: tuple[Index, NDArray[np.int32], NDArray[np.int32]]
+    inner: Places
+    cross: Places
 
     def source(self, entries: NDArray[Any]) -> NDArray[Any]:
         """Return the entries of which the matrix is made."""
-        return np.concatenate([entries.real, entries.imag, -entries.imag]) if self.real else entries
-
-    def split(self, v: Complex) -> NDArray[Any]:
-        """Return the unknowns of vertices (n, ...)."""
-        return np.concatenate([v.real, v.imag]) if self.real else v
-
-    def join(self, z: NDArray[Any]) -> Complex:
-        """Return the vertices of unknowns."""
-        return z[: self.count] + 1j * z[self.count :] if self.real else z.astype(complex, copy=False)
+        if not self.real:
+            return entries
+        real, imag = np.real(entries), np.imag(entries)
+        return np.concatenate([real, imag, -imag])
 
 
-def layout(matrix: Pattern, fixed: Index, real: bool) -> Layout:
-    """Return the layout of a system, with an order of elimination that keeps its factors sparse."""
-    from scipy.sparse import csc_array, vstack
-    from scipy.sparse import hstack as beside
+def layout(matrix: Pattern, fixed: Index, real: bool, ordered: bool) -> Layout:
+    """Return the layout of a system.
 
-    n, size = matrix.count, len(matrix.indices)
+    Parameters
+    ----------
+    matrix : Pattern
+    fixed : ndarray of int
+        The vertices whose places are given.
+    real : bool
+        Whether the unknowns are to be x and y.
+    ordered : bool
+        Whether to look for an order of elimination that serves every frame.
 
-    def numbered(first: int) -> csc_array:
-        # Counted from 1: a position 0 would be dropped as an entry that is not there.
-        data = np.arange(first + 1, first + size + 1)
-        return csc_array((data, matrix.indices, matrix.indptr), (n, n))
+    Returns
+    -------
+    Layout
+    """
+    from scipy.sparse import csc_array
 
-    whole: Any = numbered(0)
+    n, size = matrix.count, matrix.count + 2 * len(matrix.ends)
+    row, column = matrix.places
+    # Counted from 1: a position 0 would be dropped as an entry that is not there.
+    number = np.arange(1, size + 1)
     if real:
-        whole = vstack(
-            [beside([numbered(0), numbered(2 * size)]), beside([numbered(size), numbered(0)])], format="csc"
-        )
-        fixed = np.concatenate([fixed, fixed + n])
-    unknowns = whole.shape[0]
-    free = np.setdiff1d(np.arange(unknowns), fixed)
-    free = free[_order(csc_array(whole[free][:, free]))]
-    parts = []
-    for columns in (free, fixed):
-        part: Any = csc_array(whole[free][:, columns])
-        part.sort_indices()
-        parts.append((part.data - 1, part.indices.astype(np.int32), part.indptr.astype(np.int32)))
-    return Layout(n, real, free, fixed, parts[0], parts[1])
+        # The matrix of a complex number, [[x, -y], [y, x]], from the source (x, y, -y).
+        row = np.concatenate([row, row, row + n, row + n])
+        column = np.concatenate([column, column + n, column, column + n])
+        number = np.concatenate([number, number + 2 * size, number + size, number])
+        fixed, n = np.concatenate([fixed, fixed + n]), 2 * n
+    whole = csc_array((number, (row, column)), (n, n))
+    free = np.setdiff1d(np.arange(n), fixed)
+    if ordered:
+        free = free[_order(csc_array(whole[free][:, free]))]
+    below = whole[free]
+    inner, cross = (_places(below[:, columns]) for columns in (free, fixed))
+    return Layout(matrix.count, real, ordered, free, fixed, inner, cross)
+
+
+def _places(part: Any) -> Places:
+    part.sort_indices()
+    return part.data - 1, part.indices.astype(np.int32), part.indptr.astype(np.int32)
 
 
 def _order(pattern: Any) -> Index:
     """Return an order of elimination for a symmetric pattern: minimum degree, as SuperLU finds it."""
     from scipy.sparse import csc_array
-    from scipy.sparse.linalg import splu
 
     n = pattern.shape[0]
     if not n:
         return np.zeros(0, np.intp)
     # A matrix of this pattern that is diagonally dominant: only the pattern matters.
     data = np.where(pattern.indices == np.repeat(np.arange(n), np.diff(pattern.indptr)), float(n), -1e-3)
-    factor = splu(
-        csc_array((data, pattern.indices, pattern.indptr), (n, n)),
-        permc_spec="MMD_AT_PLUS_A",
+    factor = _superlu(csc_array((data, pattern.indices, pattern.indptr), (n, n)), False)
+    return np.argsort(factor.perm_c).astype(np.intp)
+
+
+def _superlu(matrix: Any, ordered: bool) -> Any:
+    from scipy.sparse.linalg import splu
+
+    return splu(
+        matrix,
+        permc_spec="NATURAL" if ordered else "MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
+        panel_size=1,
         options={"SymmetricMode": True},
     )
-    # perm_c tells where each column goes; its inverse lists the columns in their order.
-    return np.argsort(factor.perm_c)
 
 
 class Factor:
-    """A factored frame: the matrix among the free unknowns, and the conditions beside it."""
+    """A factored system.
 
-    def __init__(self, at: Layout, entries: NDArray, rows: NDArray, delta: Array) -> None:
+    Parameters
+    ----------
+    at : Layout
+    entries : ndarray, shape (entries of the pattern,)
+        Of H, real or complex.
+    rows : ndarray, shape (k, unknowns)
+        The conditions U that stand beside the matrix.
+    delta : ndarray, shape (k,)
+    """
+
+    def __init__(self, at: Layout, entries: NDArray[Any], rows: Array, delta: Array):
         from scipy.sparse import csc_array
-        from scipy.sparse.linalg import splu
 
-        source = at.source(entries)
-        n, m = len(at.free), len(at.fixed)
         self.at = at
-        self.inner = csc_array((source[at.inner[0]], *at.inner[1:]), (n, n))
-        self.cross = csc_array((source[at.cross[0]], *at.cross[1:]), (n, m))
-        self.solver = splu(
-            self.inner, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-        )
-        self.rows, self.rows_fixed = rows[:, at.free], rows[:, at.fixed]
-        self.delta = delta
-        self.beside = self._base(np.conj(self.rows.T)) if len(rows) else np.zeros((n, 0))
-        self.schur = self.rows @ self.beside + np.diag(delta)
+        source, free, fixed = at.source(entries), len(at.free), len(at.fixed)
+        place, indices, indptr = at.inner
+        self.inner = csc_array((source[place], indices, indptr), (free, free))
+        place, indices, indptr = at.cross
+        self.cross = csc_array((source[place], indices, indptr), (free, fixed))
+        # Where every vertex is given there is nothing to solve.
+        self.solver = _superlu(self.inner, at.ordered) if free else None
+        self.norm = float(np.max(abs(self.inner).sum(axis=0), initial=0.0))
+        self.rows, self.rows_fixed, self.delta = rows[:, at.free], rows[:, at.fixed], delta
+        self.beside = self._base(self.rows.astype(self.inner.dtype)) if len(rows) else self.rows
+        self.schur = self.rows @ self.beside.T + np.diag(delta)
 
-    def _base(self, b: NDArray[Any]) -> NDArray[Any]:
-        b = np.ascontiguousarray(b)
-        if np.iscomplexobj(b) and not np.iscomplexobj(self.inner.data):
-            return self.solver.solve(b.real) + 1j * self.solver.solve(b.imag)
-        return self.solver.solve(b.astype(self.inner.dtype, copy=False))
-
-    def _bordered(self, b: NDArray, d: NDArray[Any]) -> tuple[NDArray, NDArray[Any]]:
-        z = self._base(b)
-        if not len(self.rows):
-            return z, d
-        mu = np.linalg.solve(self.schur, self.rows @ z - d)
-        return z - self.beside @ mu, mu
-
-    def solve(self, b: Complex, values: NDArray, given: Complex) -> tuple[Complex, Array]:
-        """Return the vertices, and the largest relative residual of each column.
+    def solve(self, b: Complex, values: NDArray[Any], given: Complex) -> tuple[Complex, Array]:
+        """Solve for many right sides.
 
         Parameters
         ----------
-        b : ndarray of complex, shape (n, T)
-        values : ndarray, shape (rows, T)
+        b : ndarray of complex, shape (T, n)
+        values : ndarray, shape (T, k)
             What the conditions beside the matrix ask for.
-        given : ndarray of complex, shape (fixed vertices, T)
+        given : ndarray of complex, shape (T, fixed vertices)
+
+        Returns
+        -------
+        v : ndarray of complex, shape (T, n)
+        residual : ndarray, shape (T,)
+            Relative to the norms of the matrix and of the solution.
         """
-        at = self.at
-        known = np.concatenate([given.real, given.imag]) if at.real else given
-        right = at.split(b)[at.free] - self.cross @ known
-        d = values - self.rows_fixed @ known
-        z, mu = self._bordered(right, d)
-        residual, rest = self._residual(z, mu, right, d)
-        if np.max(residual, initial=0.0) > 1e-13:
-            dz, dmu = self._bordered(*rest)
-            z, mu = z + dz, mu + dmu
-            residual, _ = self._residual(z, mu, right, d)
-        whole = np.zeros((len(at.free) + len(at.fixed), z.shape[1]), np.result_type(z, known))
-        whole[at.free], whole[at.fixed] = z, known
-        return at.join(whole), residual
+        if self.at.real:
+            z, residual = self._solve(_beside(b), np.real(values), _beside(given))
+            return z[:, : self.at.count] + 1j * z[:, self.at.count :], residual
+        if np.iscomplexobj(self.inner.data):
+            return self._solve(b, values, given)
+        # A real matrix: the real parts of all right sides, then the imaginary ones.
+        z, residual = self._solve(*(np.concatenate([np.real(x), np.imag(x)]) for x in (b, values, given)))
+        T = len(b)
+        return z[:T] + 1j * z[T:], np.maximum(residual[:T], residual[T:])
+
+    def _solve(
+        self, b: NDArray[Any], values: NDArray[Any], given: NDArray[Any]
+    ) -> tuple[NDArray[Any], Array]:
+        right = b[:, self.at.free]
+        if given.shape[1]:
+            right -= (self.cross @ given.T).T
+            values = values - given @ self.rows_fixed.T
+        z, mu = self._bordered(right, values)
+        residual, rest, miss = self._residual(z, mu, right, values)
+        if (poor := residual > GOOD).any():
+            dz, dmu = self._bordered(rest[poor], miss[poor])
+            z[poor], mu[poor] = z[poor] + dz, mu[poor] + dmu
+            residual[poor] = self._residual(z[poor], mu[poor], right[poor], values[poor])[0]
+        whole = np.empty(b.shape, z.dtype)
+        whole[:, self.at.free], whole[:, self.at.fixed] = z, given
+        return whole, residual
+
+    def _base(self, b: NDArray[Any]) -> NDArray[Any]:
+        return self.solver.solve(b.T).T if self.solver else b
+
+    def _bordered(self, b: NDArray[Any], d: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+        z = self._base(b)
+        if not len(self.rows):
+            return z, d
+        mu = np.linalg.solve(self.schur, (z @ self.rows.T - d).T).T
+        return z - mu @ self.beside, mu
 
     def _residual(
-        self, z: NDArray, mu: NDArray, b: NDArray, d: NDArray
-    ) -> tuple[Array, tuple[NDArray, NDArray[Any]]]:
-        rest = b - self.inner @ z - np.conj(self.rows.T) @ mu
-        miss = d - self.rows @ z + self.delta[:, None] * mu
-        size = abs(self.inner) @ np.abs(z) + np.abs(b)
-        scale = np.maximum(size.max(axis=0, initial=0.0), 1e-300)
-        residual = np.abs(rest).max(axis=0, initial=0.0) / scale
-        reach = np.maximum(np.abs(d).max(axis=0, initial=0.0), np.abs(z).max(axis=0, initial=0.0))
-        miss_size = np.abs(miss).max(axis=0, initial=0.0) / np.maximum(reach, 1e-300)
-        return np.maximum(residual, miss_size), (rest, miss)
+        self, z: NDArray[Any], mu: NDArray[Any], b: NDArray[Any], d: NDArray[Any]
+    ) -> tuple[Array, NDArray[Any], NDArray[Any]]:
+        """The relative residual of each right side, and what is left of both kinds of equations."""
+        rest = b - (self.inner @ z.T).T - mu @ self.rows
+        miss = d - z @ self.rows.T + self.delta * mu
+        reach = _largest(z)
+        scale = self.norm * reach + _largest(b)
+        missed = _largest(miss) / np.maximum(np.maximum(_largest(d), reach), 1e-300)
+        return np.maximum(_largest(rest) / np.maximum(scale, 1e-300), missed), rest, miss
 
 
-def dense(rows: Rows, frame: int, chosen: Index, count: int, real: bool) -> NDArray[Any]:
-    """Return chosen conditions of one frame as the rows of a matrix on the unknowns."""
-    width = 2 * count if real else count
-    out: list[NDArray[Any]] = []
-    for k in chosen:
-        f = np.zeros(count, complex)
-        factor = rows.factors[k][frame if len(rows.factors[k]) > 1 else 0]
-        if len(rows.columns[k]):
-            f[rows.columns[k]] = factor
-        else:
-            f[:] = factor / count
-        if not real:
-            out.append(f)
-            continue
-        out.append(np.concatenate([f.real, -f.imag]))
-        if not rows.real[k]:
-            out.append(np.concatenate([f.imag, f.real]))
-    return np.reshape(out, (-1, width))
+def _largest(x: NDArray[Any]) -> Array:
+    if np.iscomplexobj(x):
+        return np.sqrt(np.max(np.real(x) ** 2 + np.imag(x) ** 2, axis=1, initial=0.0))
+    return np.maximum(np.max(x, axis=1, initial=0.0), -np.min(x, axis=1, initial=0.0))
 
 
-def targets(rows: Rows, chosen: Index, real: bool) -> NDArray[Any]:
-    """Return what chosen conditions ask for, in the order of `dense`; shape (rows, T)."""
-    out: list[NDArray[Any]] = []
-    for k in chosen:
-        value = rows.values[k]
-        out += [value] if not real else [value.real] if rows.real[k] else [value.real, value.imag]
-    return np.reshape(out, (-1, rows.values.shape[1]))
-
-
-def deltas(rows: Rows, chosen: Index, real: bool) -> Array:
-    """Return 1 / weight of chosen conditions, in the order of `dense`."""
-    out: list[Any] = []
-    for k in chosen:
-        out += [1.0 / rows.weights[k]] * (1 if not real or rows.real[k] else 2)
-    return np.array(out, float)
+def _beside(v: Complex) -> Array:
+    return np.concatenate([v.real, v.imag], axis=1)

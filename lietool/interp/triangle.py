@@ -8,10 +8,6 @@ another:
     arap        A^P(t) = R(t theta) ((1-t) I + t S)       regular for 0 <= t <= 1
     logexp      A^E(t) = R(t theta) exp(t log S)          regular for every t
     matrix_log  exp(t log A)                              only where a real log A exists
-
-A real matrix acts on the plane of complex numbers as z -> a z + b conj(z).
-With A = R(theta) S, S symmetric, that is a = e^(i theta) tr(S)/2, so that the
-polar decomposition is that of one complex number, and every power of A is a closed formula.
 """
 
 from collections.abc import Callable
@@ -19,6 +15,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lietool.interp import triangle_kernels
+from lietool.interp.triangle_kernels import coordinates as coordinates
+from lietool.interp.triangle_kernels import det as det
+from lietool.interp.triangle_kernels import inverse as inverse
+from lietool.interp.triangle_kernels import matrix as matrix
 from lietool.lie import checks
 
 Array = NDArray[np.float64]
@@ -49,7 +50,7 @@ def frame(triangle: ArrayLike) -> Array:
     """
     p = checks.array("triangle.frame", "triangle", triangle, (3, 2))
     A = np.zeros((*p.shape[:-2], 3, 3))
-    A[..., :2, :2] = np.swapaxes(p[..., :2, :] - p[..., 2:, :], -1, -2)
+    A[..., :2, :2] = sides(p)
     A[..., :2, 2] = p[..., 2, :]
     A[..., 2, 2] = 1.0
     return A
@@ -77,19 +78,24 @@ def affine_map(source: ArrayLike, target: ArrayLike) -> Array:
     P, Q = frame(source), frame(target)
     checks_degenerate("triangle.affine_map", "source", P[..., :2, :2])
     A = np.broadcast_to(np.eye(3), np.broadcast_shapes(P.shape, Q.shape)).copy()
-    A[..., :2, :2] = Q[..., :2, :2] @ _inverse(P[..., :2, :2])
+    A[..., :2, :2] = Q[..., :2, :2] @ inverse(P[..., :2, :2])
     # From corner to corner, not from the inverse of the whole: far from the origin that would lose digits.
     A[..., :2, 2] = Q[..., :2, 2] - np.einsum("...ij,...j->...i", A[..., :2, :2], P[..., :2, 2])
     return A
 
 
+def sides(p: Array) -> Array:
+    """Return two sides of triangles (..., 3, 2), p_1 - p_3 and p_2 - p_3, as columns (..., 2, 2)."""
+    return np.swapaxes(p[..., :2, :] - p[..., 2:, :], -1, -2)
+
+
 def checks_degenerate(where: str, name: str, E: Array) -> None:
     """Refuse triangles, given by two of their sides as columns (..., 2, 2), whose corners lie on a line."""
-    det = _det(E)
-    flat = np.abs(det) <= 1e-14 * np.sum(E**2, axis=(-2, -1))
+    twice = det(E)
+    flat = np.abs(twice) <= 1e-14 * np.sum(E**2, axis=(-2, -1))
     if np.any(flat):
         index = checks.first(flat)
-        checks.fail(where, name, "a triangle with area", f"area {0.5 * float(det[index]):.3g}", index)
+        checks.fail(where, name, "a triangle with area", f"area {0.5 * float(twice[index]):.3g}", index)
 
 
 def linear(A: ArrayLike, t: ArrayLike, theta: ArrayLike | None = None) -> Array:
@@ -139,11 +145,9 @@ def arap(A: ArrayLike, t: ArrayLike, theta: ArrayLike | None = None) -> Array:
         If det A <= 0, or theta is no angle of A.
     """
     A = _positive("triangle.arap", A)
-    a, b = coordinates(A)
-    angle = _angle("triangle.arap", a, theta)
+    angle = _angle("triangle.arap", A, theta)
     t = _time("triangle.arap", t, A.ndim)[..., 0, 0]
-    turn, back = np.exp(1j * t * angle), np.exp(-1j * angle)
-    return matrix(turn * (1.0 - t + t * np.abs(a)), turn * t * (b * back))
+    return matrix(*triangle_kernels.arap(A, angle)(t))
 
 
 def logexp(A: ArrayLike, t: ArrayLike, theta: ArrayLike | None = None) -> Array:
@@ -171,15 +175,9 @@ def logexp(A: ArrayLike, t: ArrayLike, theta: ArrayLike | None = None) -> Array:
         If det A <= 0, or theta is no angle of A.
     """
     A = _positive("triangle.logexp", A)
-    a, b = coordinates(A)
-    angle = _angle("triangle.logexp", a, theta)
+    angle = _angle("triangle.logexp", A, theta)
     t = _time("triangle.logexp", t, A.ndim)[..., 0, 0]
-    # The eigenvalues of S are |a| + |b| and |a| - |b|; the second would cancel, det does not.
-    log_det = np.log(_det(A))
-    half_spread = np.log(np.abs(a) + np.abs(b)) - 0.5 * log_det
-    turn = np.exp(1j * t * angle + 0.5 * t * log_det)
-    along = _unit(b * np.exp(-1j * angle))
-    return matrix(turn * np.cosh(t * half_spread), turn * np.sinh(t * half_spread) * along)
+    return matrix(*triangle_kernels.logexp(A, angle)(t))
 
 
 def matrix_log(A: ArrayLike, t: ArrayLike, theta: ArrayLike | None = None) -> Array:
@@ -211,27 +209,8 @@ def matrix_log(A: ArrayLike, t: ArrayLike, theta: ArrayLike | None = None) -> Ar
         remedy = "Use logexp, which reaches all of GL+(2)."
         got = f"eigenvalues {values} in matrix"
         checks.fail("triangle.matrix_log", "A", "a matrix with a real logarithm", got, index, remedy)
-    a, b = coordinates(A)
     t = _time("triangle.matrix_log", t, A.ndim)[..., 0, 0]
-    # A = m I + Z, and Z Z = spread I.
-    mean, size = a.real, 0.5 * np.log(_det(A))
-    spread = np.abs(b) ** 2 - a.imag**2
-    root = np.sqrt(np.abs(spread))
-    turning = spread < 0.0
-    phi = np.arctan2(root, mean)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        eta = np.where(turning, 0.0, np.arctanh(np.where(turning, 0.0, root / mean)))
-    even = np.where(turning, np.cos(t * phi), np.cosh(t * eta))
-    odd = np.where(turning, np.sin(t * phi), np.sinh(t * eta))
-    # Where both eigenvalues are equal, sinh(t eta)/root tends to t / mean.
-    with np.errstate(divide="ignore", invalid="ignore"):
-        odd = np.where(root > 1e-8 * np.abs(mean), odd / root, t / mean)
-    # A half turn with a dilation has logarithms, of which this takes the turn to the left.
-    half = np.broadcast_to((mean < 0.0) & (root <= 1e-8 * np.abs(mean)), odd.shape)
-    grow = np.exp(t * size)
-    even = np.where(half, np.cos(np.pi * t), even)
-    here = np.where(half, 1j * np.sin(np.pi * t), 1j * odd * a.imag)
-    return matrix(grow * even + grow * here, grow * np.where(half, 0.0, odd) * b)
+    return matrix(*triangle_kernels.matrix_log(A, None)(t))
 
 
 def has_real_log(A: ArrayLike) -> NDArray[np.bool_]:
@@ -251,7 +230,7 @@ def has_real_log(A: ArrayLike) -> NDArray[np.bool_]:
     a, b = coordinates(A)
     spread = np.abs(b) ** 2 - a.imag**2
     half_turn = (np.abs(a.imag) + np.abs(b)) <= 1e-12 * np.abs(a.real)
-    return (_det(A) > 0.0) & ((spread < 0.0) | (a.real > 0.0) | half_turn)
+    return (det(A) > 0.0) & ((spread < 0.0) | (a.real > 0.0) | half_turn)
 
 
 def principal_angle(A: ArrayLike) -> Array:
@@ -270,25 +249,31 @@ def principal_angle(A: ArrayLike) -> Array:
     return np.angle(coordinates(_positive("triangle.principal_angle", A))[0])
 
 
-def coordinates(A: Array) -> tuple[Complex, Complex]:
-    """Return the complex numbers (a, b) by which a matrix acts as z -> a z + b conj(z).
+def path(homotopy: Homotopy, A: Array, theta: Array) -> Callable[[float], Complex]:
+    """Return the way of many maps at once, one time after the other, as fast as it can be had.
 
-    Book: A.3
+    Book: 5.2
+
+    Parameters
+    ----------
+    homotopy : callable
+        One of this module; or another with the same arguments, which is then called for each time.
+    A : (m, 2, 2), GL+
+    theta : (m,), rad
+        The angles of rotation of A, with any number of full turns.
+
+    Returns
+    -------
+    path : callable
+        From a time to the coordinates of the maps A(t), (2, m) complex numbers.
     """
-    p, q, r, s = A[..., 0, 0], A[..., 0, 1], A[..., 1, 0], A[..., 1, 1]
-    return 0.5 * (p + s + 1j * (r - q)), 0.5 * (p - s + 1j * (r + q))
-
-
-def matrix(a: Complex | Array, b: Complex | Array) -> Array:
-    """Return the matrices (..., 2, 2) that act as z -> a z + b conj(z)."""
-    a, b = np.broadcast_arrays(a, b)
-    rows = [a.real + b.real, b.imag - a.imag, a.imag + b.imag, a.real - b.real]
-    return np.stack(rows, axis=-1).reshape(*a.shape, 2, 2)
-
-
-def _unit(z: Complex) -> Complex:
-    size = np.abs(z)
-    return np.where(size > 0.0, z / np.where(size > 0.0, size, 1.0), 1.0)
+    for known, kernel in _KERNELS:
+        if homotopy is known:
+            way = kernel(A, theta)
+            return lambda t: np.stack(way(t))
+    # What it refuses is refused here, and not in the middle of a film.
+    homotopy(A, 0.0, theta)
+    return lambda t: np.stack(coordinates(homotopy(A, t, theta)))
 
 
 def _time(where: str, t: ArrayLike, ndim: int) -> Array:
@@ -297,7 +282,8 @@ def _time(where: str, t: ArrayLike, ndim: int) -> Array:
     return t.reshape(*t.shape, *(1,) * ndim)
 
 
-def _angle(where: str, a: Complex, theta: ArrayLike | None) -> Array:
+def _angle(where: str, A: Array, theta: ArrayLike | None) -> Array:
+    a = coordinates(A)[0]
     if theta is None:
         return np.angle(a)
     theta = checks.array(where, "theta", theta, ())
@@ -312,19 +298,16 @@ def _angle(where: str, a: Complex, theta: ArrayLike | None) -> Array:
 
 def _positive(where: str, A: ArrayLike) -> Array:
     A = checks.array(where, "A", A, (2, 2))
-    det = _det(A)
-    if not np.all(det > 0.0):
-        index = checks.first(~(det > 0.0))
+    size = det(A)
+    if not np.all(size > 0.0):
+        index = checks.first(~(size > 0.0))
         remedy = "A reflection cannot be reached from the identity; reverse one of the shapes."
-        checks.fail(where, "A", "a map with det A > 0", f"det {float(det[index]):.4g}", index, remedy)
+        checks.fail(where, "A", "a map with det A > 0", f"det {float(size[index]):.4g}", index, remedy)
     return A
 
 
-def _det(A: Array) -> Array:
-    return A[..., 0, 0] * A[..., 1, 1] - A[..., 0, 1] * A[..., 1, 0]
-
-
-def _inverse(A: Array) -> Array:
-    p, q, r, s = A[..., 0, 0], A[..., 0, 1], A[..., 1, 0], A[..., 1, 1]
-    adjugate = np.stack([s, -q, -r, p], axis=-1).reshape(A.shape)
-    return adjugate / _det(A)[..., None, None]
+_KERNELS = (
+    (linear, triangle_kernels.linear),
+    (arap, triangle_kernels.arap),
+    (logexp, triangle_kernels.logexp),
+)

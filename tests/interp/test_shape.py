@@ -193,7 +193,9 @@ class TestLaws:
         for name, moves in (("frobenius", False), ("point", False), ("similarity", True)):
             prepared = shape.prepare(P, Q, F, error=ENERGIES[name])
             part = prepared.sums[0]
-            matrices = [prepared.pattern.add(part.blocks(part.form(t))) for t in (0.2, 0.7)]
+            matrices = [
+                prepared.assembly.pattern.add(part.blocks(part.form(part.maps(t)))) for t in (0.2, 0.7)
+            ]
             assert (np.abs(matrices[0] - matrices[1]).max() > 1e-3) == moves
             assert prepared.is_static == (not moves)
 
