@@ -100,7 +100,7 @@ def gecko() -> Skeleton:
     target |= {"fore left1": 24.0, "fore left2": -30.0, "fore right1": -34.0, "fore right2": 22.0}
     target |= {"hind left1": -10.0, "hind left2": 18.0, "hind right1": 14.0, "hind right2": -44.0}
     marks = {"nose": (1.89, 0.0), "tail": (-2.55, 0.0), "eye left": (1.5, 0.16), "eye right": (1.5, -0.16)}
-    return Skeleton(tuple(bones), (Pose(source), Pose(target)), 0.105, 0.05, marks)
+    return Skeleton(tuple(bones), (Pose(source), Pose(target)), 0.096, 0.05, marks)
 
 
 _LINKS = 30
@@ -194,5 +194,5 @@ def cat() -> Skeleton:
     target |= {"far hind1": -40.0, "far hind2": -14.0, "far hind3": -40.0}
     target |= {"tail1": 6.0, "tail2": 10.0, "tail3": 12.0, "tail4": 8.0, "tail5": 4.0}
     marks = {"nose": (1.49, 0.41), "tail": (-2.62, 0.63), "eye": (1.14, 0.58)}
-    marks |= {"ear": (0.79, 1.05), "brow": (1.21, 1.03)}
-    return Skeleton(tuple(bones), (Pose(source), Pose(target, (1.4, 1.1))), 0.115, 0.045, marks)
+    marks |= {"ear": (0.79, 1.05), "brow": (1.21, 1.03), "inner fore": (0.5, 0.08), "inner hind": (-0.8, 0.05)}
+    return Skeleton(tuple(bones), (Pose(source), Pose(target, (1.2, 0.9))), 0.115, 0.045, marks)

@@ -40,7 +40,7 @@ class Shape:
     along : (n,)
         From 0 at the nose to 1 at the tip of the tail: by this number both poses are coloured alike.
     marks : mapping from str to int
-        Vertices with a name: "nose", "tail" and the eyes.
+        Vertices with a name: "nose", "tail", names that begin with "eye", ...
     """
 
     source: Array
@@ -151,9 +151,11 @@ def _mesh(skeleton: Skeleton) -> tuple[Array, Index, dict[str, int]]:
     marks = {}
     for name, position in skeleton.marks.items():
         # A tip takes the nearest vertex of the outline, an eye one of those inside.
-        among = np.flatnonzero(~held if name.startswith("eye") else held)
-        marks[name] = int(among[np.argmin(np.linalg.norm(points[among] - position, axis=1))])
-        points[marks[name]] = position if name.startswith("eye") else _onto(skeleton, np.array([position]))[0]
+        within = name.startswith(("eye", "inner"))
+        among = np.flatnonzero(held != within)
+        nearest = int(among[np.argmin(np.linalg.norm(points[among] - position, axis=1))])
+        points[nearest] = position if within else _onto(skeleton, np.array([position]))[0]
+        marks[name] = nearest
     held[list(marks.values())] = True
     faces = _joined(skeleton, points)
     for _ in range(3):

@@ -1,0 +1,359 @@
+"""Figures 6.1 to 6.8 of the book, and what its sections 6.4 and 6.5 say besides."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+
+from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.mesh.shapes import Shape
+
+from . import _morph, _morph_stages, _morph_strip, _pairs
+from ._morph import Choice
+
+_MOVING = ("stage", "local", "global", "frames")
+_WHOLE = ("stage", "global", "frames")
+_NAMES = {
+    "frobenius": "E^F",
+    "point": "E^P",
+    "similarity": "E^R",
+    "point-similarity": "E^S",
+    "symmetric": r"E^F_i(t) + E_i^{F,-1}(1-t)",
+}
+
+
+@figure(
+    plates={
+        "B6.1": Plate(
+            title="Two compatibly triangulated shapes",
+            equations=("5.2",),
+            caption=(
+                "The problem: a continuous way from the source to the target. Both have the same triangles, "
+                "and equal colours are corresponding places. A band of triangles is marked dark in both."
+            ),
+        ),
+        "B6.2": Plate(
+            title="Local affine maps",
+            equations=("5.2",),
+            caption=(
+                "Five points and the triangles {1, 2, 5}, {2, 4, 5} and {2, 3, 4} in two poses. Each "
+                "triangle has its own linear map A_i. Below, each triangle about its centre: in the source "
+                "(dashed), and half way to the target (filled); and its map in numbers."
+            ),
+            params={"example": "three-triangles", "stage": "maps"},
+        ),
+        "B6.3": Plate(
+            title="Local interpolation",
+            equations=("5.2", "6.2"),
+            caption=(
+                "Half way, each triangle is where its own map has taken it: by the linear part A_i(t) and by a "
+                "translation that goes straight in a frame that turns with the whole. Neighbours do not "
+                "agree on where their common edge goes: the shape is torn apart."
+            ),
+            params={"stage": "local"},
+        ),
+        "B6.4": Plate(
+            title="From local to global",
+            equations=("6.2",),
+            caption=(
+                "The same moment: of all whole shapes, the one whose maps B_i(t) are nearest to the A_i(t) "
+                "in the sense of E^F. The triangles are stitched together again."
+            ),
+            params={"stage": "global"},
+        ),
+        "B6.5": Plate(
+            title="E^F and constraints that wind the other way",
+            equations=("6.2",),
+            caption=(
+                "Nose and tail must stay on the two curves, which turn the other way round than the local "
+                "maps do. E^F cannot forgive that: the fish shrinks, and most of its triangles (red) are "
+                "turned over half way."
+            ),
+            params={"example": "fish", "stage": "frames", "constraint": "loci"},
+        ),
+        "B6.6": Plate(
+            title="E^F with angles within half a turn",
+            equations=("6.2",),
+            caption=(
+                "The snake rolls up by more than 540 degrees, but each local angle is taken in (-180, 180]. "
+                "Neighbours whose angles differ by a full turn pull apart, and the snake breaks there: some "
+                "triangles (red) are turned over on the way."
+            ),
+            params={"example": "snake", "stage": "frames", "angles": "principal"},
+        ),
+        "B6.7": Plate(
+            title="E^R with the same constraints as E^F",
+            equations=("6.4", "6.5"),
+            caption=(
+                "The input of the figure before. E^R takes no account of how each triangle is turned and "
+                "scaled as a whole: the fish follows the curves the other way round, and no triangle is "
+                "turned over."
+            ),
+            params={"example": "fish", "stage": "frames", "constraint": "loci", "energy": "similarity"},
+        ),
+        "B6.8": Plate(
+            title="E^R finds the rotations by itself; E^F needs consistent angles",
+            equations=("6.2", "6.4", "6.5"),
+            caption=(
+                "Above, E^R with the angles in (-180, 180] that broke the snake under E^F, and one edge of "
+                "the head held: it unrolls all the same, since E^R does not depend on the angles. Below, E^F "
+                "does as well once the angles are consistent over the mesh."
+            ),
+            params={
+                "example": "snake",
+                "stage": "frames",
+                "angles": "principal",
+                "energy": "similarity",
+                "beside": "frobenius",
+            },
+        ),
+        "G6.1": Plate(
+            title="Distances of points, E^P, beside E^F",
+            equations=("6.1", "6.2"),
+            caption=(
+                "Under the same constraints, which contradict the local maps: above, E^P sums the distances of "
+                "corners, so that a triangle counts by the square of its area, and small ones are given up for "
+                "large ones: the least determinant falls further below 0 than under E^F, below."
+            ),
+            params={
+                "example": "fish",
+                "stage": "frames",
+                "constraint": "loci",
+                "energy": "point",
+                "beside": "frobenius",
+            },
+        ),
+        "G6.2": Plate(
+            title="Points up to similarity, E^S, beside E^R",
+            equations=("6.3", "6.4"),
+            caption=(
+                "Both errors forgive each triangle its turn and its size, and both let the cat turn backwards "
+                "while it is led by nose and tail, without a triangle turned over. E^S measures by the corners, "
+                "E^R by the entries of the maps; the shapes hardly differ, the energies do."
+            ),
+            params={
+                "example": "cat",
+                "stage": "frames",
+                "constraint": "loci",
+                "energy": "point-similarity",
+                "beside": "similarity",
+            },
+        ),
+        "G6.3": Plate(
+            title="A balance of E^F and E^R",
+            equations=("6.2", "6.4"),
+            caption=(
+                "Nose and tail come closer on their curves. E^R (below) lets the whole gecko shrink with them; "
+                "with a share of E^F (above) the triangles keep more of their size, and the area does not sink "
+                "as far."
+            ),
+            params={
+                "example": "gecko",
+                "stage": "frames",
+                "constraint": "loci",
+                "winding": 0,
+                "energy": "balanced",
+                "beside": "similarity",
+            },
+        ),
+        "G6.4": Plate(
+            title="The symmetrised error",
+            equations=("6.2",),
+            caption=(
+                "Dashed: the way from the target back to the source, at the time 1 - t. With the symmetrised "
+                "error (above) it is the same as the way there; with E^F alone (below), which is weighted by "
+                "the areas and measured by the maps of one direction, it is another."
+            ),
+            params={
+                "example": "gecko",
+                "stage": "frames",
+                "constraint": "loci",
+                "winding": 0,
+                "energy": "symmetric",
+                "beside": "frobenius",
+            },
+        ),
+        "G6.5": Plate(
+            title="A somersault: the barycentre and an edge held",
+            equations=("6.4",),
+            caption=(
+                "The barycentre (dot) must follow the curve, and the vector between two vertices of the trunk "
+                "(thick line) turns forwards by a full turn more than the local maps say. E^R lets the whole "
+                "cat follow, and no triangle is turned over."
+            ),
+            params={"example": "cat", "stage": "frames", "constraint": "held", "energy": "similarity"},
+        ),
+    },
+    time=Time("t", 0.0, 1.0),
+)
+def global_interp(
+    stage: Annotated[
+        Literal["ends", "maps", "local", "global", "frames"],
+        Param("both shapes, local maps, one moment torn apart or stitched, or a strip of frames"),
+    ] = "ends",
+    example: Annotated[
+        Literal["gecko", "fish", "snake", "cat", "three-triangles"], Param("which pair of shapes")
+    ] = "gecko",
+    t: Annotated[
+        float, Param("the moment; with ends, where from nose to tail a band is marked", low=0.0, high=1.0)
+    ] = 0.5,
+    energy: Annotated[
+        Literal["frobenius", "point", "similarity", "point-similarity", "balanced", "symmetric"],
+        Param(
+            "how far maps are from the local ones: E^F, E^P, E^R, E^S, a balance, or both ways", only=_WHOLE
+        ),
+    ] = "frobenius",
+    beside: Annotated[
+        Literal["none", "frobenius", "similarity"],
+        Param("a second row, by this energy with consistent angles", only=("stage", "frames")),
+    ] = "none",
+    homotopy: Annotated[
+        Literal["logexp", "arap", "linear"],
+        Param("of the local maps: A^E, A^P or A^L", only=("stage", "maps", *_MOVING[1:])),
+    ] = "logexp",
+    angles: Annotated[
+        Literal["consistent", "principal"],
+        Param("of the local maps: without jumps over the mesh, or each within half a turn", only=_MOVING),
+    ] = "consistent",
+    constraint: Annotated[
+        Literal["line", "loci", "held"],
+        Param(
+            "barycentre on a line; nose and tail on curves; or barycentre thrown and an edge held",
+            only=_WHOLE,
+        ),
+    ] = "line",
+    winding: Annotated[
+        int,
+        Param("full turns that loci or edge are led away from the local maps", low=-2, high=2, only=_WHOLE),
+    ] = -1,
+    seed: Annotated[
+        float,
+        Param("where from nose to tail the consistent angles begin", low=0.0, high=1.0, only=_MOVING),
+    ] = 0.0,
+    turns: Annotated[int, Param("full turns added to all local angles", low=-2, high=2, only=_MOVING)] = 0,
+    w: Annotated[
+        float, Param("the share of E^F in a balance with E^R", low=0.0, high=1.0, only=("energy", "balanced"))
+    ] = 0.5,
+    weights: Annotated[
+        Literal["area", "equal"], Param("of the triangles in the energy", only=_WHOLE)
+    ] = "area",
+    steps: Annotated[
+        int, Param("frames from either end to the moment t", low=1, high=4, only=("stage", "frames"))
+    ] = 2,
+    source: Annotated[Path | None, Param("your own shape: an outline (svg, csv, json) or a mesh")] = None,
+    target: Annotated[Path | None, Param("the shape that it turns into, of the same kind")] = None,
+) -> Drawing:
+    """Two triangulated shapes and the ways between them, from the local maps to the whole shape.
+
+    What to look for: the local maps alone tear the shape apart; an energy
+    stitches it together. E^F asks that each triangle be turned just as its local
+    map turns it, so that constraints or angles that contradict this make triangles
+    shrink and turn over (red, counted); E^R leaves that open and follows. The
+    plots below a strip: the least determinant, below 0 where a triangle is turned
+    over, the area of the whole and the energy over t.
+    """
+    pair = _pairs.pair(example, source, target)
+    choice = Choice(energy, homotopy, angles, constraint, seed, turns, winding, w, weights)
+    match stage:
+        case "ends":
+            return _ends(pair, t)
+        case "maps":
+            return _maps(pair, choice, t)
+        case "local":
+            return _local(pair, choice, t)
+        case "global":
+            return _global(pair, choice, t)
+    return _frames(pair, choice, beside, steps, t)
+
+
+def _ends(pair: Shape, t: float) -> Drawing:
+    numbers = {
+        "source": pair.source,
+        "target": pair.target,
+        "faces": pair.faces,
+        "along": pair.along,
+        "band": _morph_stages.band(pair, t),
+    }
+    return Drawing(_morph_stages.ends(pair, t), numbers)
+
+
+def _maps(pair: Shape, choice: Choice, t: float) -> Drawing:
+    at = _morph.apart(pair, choice, t)[1]
+    chosen = _morph_stages.shown_maps(pair)
+    numbers = {
+        "maps": _morph.apart(pair, choice, 1.0)[1][chosen],
+        "maps_at_t": at[chosen],
+        "source": pair.source[pair.faces[chosen]],
+        "target": pair.target[pair.faces[chosen]],
+    }
+    return Drawing(_morph_stages.maps(pair, at, t), numbers)
+
+
+def _local(pair: Shape, choice: Choice, t: float) -> Drawing:
+    corners, at = _morph.apart(pair, choice, t)
+    place = _morph_stages.stage(pair, _extents(pair, choice))
+    gap = _morph_stages.gaps(pair, corners).max() / _morph_stages.side(pair)
+    said = f"corners that should meet are up to {gap:.1f} edges from their middle"
+    picture = _morph_stages.torn(pair, corners, place, t, said)
+    return Drawing(picture, {"corners": corners, "maps": at, "largest_gap": gap})
+
+
+def _global(pair: Shape, choice: Choice, t: float) -> Drawing:
+    way = _morph.way(pair, choice)
+    found = way.at(np.array([t]))
+    place = _morph_stages.stage(
+        pair, np.concatenate([_extents(pair, choice), way.measured.vertices.reshape(-1, 2)])
+    )
+    least, count = float(found.det.min()), int(found.flipped.sum())
+    said = rf"{count} of {len(pair.faces)} flipped, least $\det B_i = {least:.2f}$"
+    picture = _morph_stages.stitched(pair, found.vertices[0], found.flipped[0], place, t, said)
+    return Drawing(picture, {"vertices": found.vertices[0], "det": found.det[0], **way.numbers})
+
+
+def _extents(pair: Shape, choice: Choice) -> np.ndarray:
+    """All that the torn triangles reach at some times; shape (k, 2)."""
+    moments = np.linspace(0.0, 1.0, 9)
+    return np.concatenate([_morph.apart(pair, choice, float(t))[0].reshape(-1, 2) for t in moments])
+
+
+def _frames(pair: Shape, choice: Choice, beside: str, steps: int, t: float) -> Drawing:
+    choices = [choice]
+    if beside != "none":
+        choices.append(replace(choice, energy=beside, angles="consistent"))
+    times = np.concatenate([np.linspace(0.0, t, steps + 1), np.linspace(t, 1.0, steps + 1)[1:]])
+    both = choice.energy == "symmetric"
+    strips = []
+    for asked in choices:
+        way = _morph.way(pair, asked)
+        strips.append(_morph_strip.Strip(_name(asked), way, way.at(times), way.back(times) if both else None))
+    numbers: dict[str, object] = {"times": times}
+    for k, strip in enumerate(strips):
+        suffix = "" if k == 0 else "_beside"
+        shown = {
+            "vertices": strip.frames.vertices,
+            "flipped_in_frames": strip.frames.flipped.sum(axis=1),
+            **strip.way.numbers,
+        }
+        if strip.back is not None:
+            shown["back"] = strip.back
+        numbers |= {name + suffix: value for name, value in shown.items()}
+    return Drawing(_morph_strip.picture(strips, t), numbers)
+
+
+def _name(choice: Choice) -> str:
+    """A row's title: the energy, and the input that matters."""
+    name = (
+        rf"{choice.w:g} E^F + {1.0 - choice.w:g} E^R"
+        if choice.energy == "balanced"
+        else _NAMES[choice.energy]
+    )
+    if choice.constraint == "loci":
+        return f"${name}$, nose and tail on given curves"
+    if choice.constraint == "held":
+        return f"${name}$, barycentre on a curve, an edge held"
+    taken = (
+        r"angles in $(-180^{\circ}, 180^{\circ}]$" if choice.angles == "principal" else "consistent angles"
+    )
+    held = ", an edge held" if choice.forgives else ""
+    return f"${name}$, {taken}{held}"
