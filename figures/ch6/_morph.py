@@ -94,6 +94,13 @@ class Way:
         """The energy over the area of the source."""
         return self.measured.energy / topology.areas(self.pair.source, self.pair.faces).sum()
 
+    @cached_property
+    def asymmetry(self) -> Array:
+        """How far the way back passes from the way there, at most, over the size of the source."""
+        far = np.linalg.norm(self.measured.vertices - self.back(self.measured.t), axis=-1).max(axis=1)
+        # Of what is the same but for rounding, the rest is noise.
+        return np.round(far / np.ptp(self.pair.source, axis=0).max(), 12)
+
     @property
     def numbers(self) -> dict[str, object]:
         """What the strip and its plots show."""

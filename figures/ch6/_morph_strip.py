@@ -51,7 +51,8 @@ def picture(strips: Sequence[Strip], t: float) -> scene.Picture:
     """Return the page; `t` is the moment that is marked in the plots."""
     window = _window(strips)
     columns = len(strips[0].frames.t)
-    counted = any(s.way.led.loci or s.way.measured.flipped.any() for s in strips)
+    led = len(strips) == 1 and bool(strips[0].way.led.loci)
+    counted = led or any(bool(s.way.measured.flipped.any()) for s in strips)
     wide, tall = window[1] - window[0], window[3] - window[2]
     # What is left of the page for shapes, when text and the lowest plots have had theirs.
     lines = (len(strips) if counted else 0) + 1
@@ -188,11 +189,13 @@ def _title(name: str, height: float, k: int | None) -> list[scene.Record]:
 
 def _plots(strips: Sequence[Strip], t: float, low: float, high: float) -> list[scene.Record]:
     x = strips[0].way.measured.t
-    shown = (
+    shown = [
         (r"least $\det B_i$", [s.way.measured.det.min(axis=1) for s in strips], True),
         ("area, source = 1", [s.way.area for s in strips], True),
         ("energy over area", [s.way.energy for s in strips], False),
-    )
+    ]
+    if strips[0].back is not None:
+        shown[1] = ("from the way back", [s.way.asymmetry for s in strips], False)
     records: list[scene.Record] = []
     for place, (title, curves, one) in enumerate(shown):
         least, most = min(float(c.min()) for c in curves), max(float(c.max()) for c in curves)

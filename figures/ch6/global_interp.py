@@ -1,26 +1,16 @@
 """Figures 6.1 to 6.8 of the book, and what its sections 6.4 and 6.5 say besides."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
-import numpy as np
-
 from lietool.figure import Drawing, Param, Plate, Time, figure
-from lietool.mesh.shapes import Shape
 
-from . import _morph, _morph_stages, _morph_strip, _pairs
+from . import _morph_pages as pages
+from . import _pairs
 from ._morph import Choice
 
 _MOVING = ("stage", "local", "global", "frames")
 _WHOLE = ("stage", "global", "frames")
-_NAMES = {
-    "frobenius": "E^F",
-    "point": "E^P",
-    "similarity": "E^R",
-    "point-similarity": "E^S",
-    "symmetric": r"E^F_i(t) + E_i^{F,-1}(1-t)",
-}
 
 
 @figure(
@@ -47,8 +37,8 @@ _NAMES = {
             title="Local interpolation",
             equations=("5.2", "6.2"),
             caption=(
-                "Half way, each triangle is where its own map has taken it: by the linear part A_i(t) and by a "
-                "translation that goes straight in a frame that turns with the whole. Neighbours do not "
+                "Half way, each triangle is where its own map has taken it: by the linear part A_i(t) and by "
+                "a translation that goes straight in a frame that turns with the whole. Neighbours do not "
                 "agree on where their common edge goes: the shape is torn apart."
             ),
             params={"stage": "local"},
@@ -112,9 +102,9 @@ _NAMES = {
             title="Distances of points, E^P, beside E^F",
             equations=("6.1", "6.2"),
             caption=(
-                "Under the same constraints, which contradict the local maps: above, E^P sums the distances of "
-                "corners, so that a triangle counts by the square of its area, and small ones are given up for "
-                "large ones: the least determinant falls further below 0 than under E^F, below."
+                "Under the same constraints, which contradict the local maps: above, E^P sums the distances "
+                "of corners, so that a triangle counts by the square of its area, and small ones are given "
+                "up for large ones: the least determinant falls further below 0 than under E^F, below."
             ),
             params={
                 "example": "fish",
@@ -128,9 +118,9 @@ _NAMES = {
             title="Points up to similarity, E^S, beside E^R",
             equations=("6.3", "6.4"),
             caption=(
-                "Both errors forgive each triangle its turn and its size, and both let the cat turn backwards "
-                "while it is led by nose and tail, without a triangle turned over. E^S measures by the corners, "
-                "E^R by the entries of the maps; the shapes hardly differ, the energies do."
+                "Both errors forgive each triangle its turn and its size, and both let the cat, led by nose "
+                "and tail, turn backwards without a triangle turned over. E^S measures by the corners, E^R "
+                "by the entries of the maps: the shapes hardly differ, the energies do."
             ),
             params={
                 "example": "cat",
@@ -144,9 +134,9 @@ _NAMES = {
             title="A balance of E^F and E^R",
             equations=("6.2", "6.4"),
             caption=(
-                "Nose and tail come closer on their curves. E^R (below) lets the whole gecko shrink with them; "
-                "with a share of E^F (above) the triangles keep more of their size, and the area does not sink "
-                "as far."
+                "Nose and tail come closer on their curves. E^R (below) lets the whole gecko shrink with "
+                "them; with a share of E^F (above) the triangles keep more of their size, and the area does "
+                "not sink as far."
             ),
             params={
                 "example": "gecko",
@@ -162,11 +152,12 @@ _NAMES = {
             equations=("6.2",),
             caption=(
                 "Dashed: the way from the target back to the source, at the time 1 - t. With the symmetrised "
-                "error (above) it is the same as the way there; with E^F alone (below), which is weighted by "
-                "the areas and measured by the maps of one direction, it is another."
+                "error (above) it is the way there; with E^F alone (below), which is weighted by the areas "
+                "and measured by the maps of one direction, it is a little beside it: the middle plot has "
+                "the distance, over the size of the snake."
             ),
             params={
-                "example": "gecko",
+                "example": "snake",
                 "stage": "frames",
                 "constraint": "loci",
                 "winding": 0,
@@ -178,9 +169,9 @@ _NAMES = {
             title="A somersault: the barycentre and an edge held",
             equations=("6.4",),
             caption=(
-                "The barycentre (dot) must follow the curve, and the vector between two vertices of the trunk "
-                "(thick line) turns forwards by a full turn more than the local maps say. E^R lets the whole "
-                "cat follow, and no triangle is turned over."
+                "The barycentre (dot) must follow the curve, and the vector between two vertices of the "
+                "trunk (thick line) turns forwards by a full turn more than the local maps say. E^R lets the "
+                "whole cat follow, and no triangle is turned over."
             ),
             params={"example": "cat", "stage": "frames", "constraint": "held", "energy": "similarity"},
         ),
@@ -257,103 +248,11 @@ def global_interp(
     choice = Choice(energy, homotopy, angles, constraint, seed, turns, winding, w, weights)
     match stage:
         case "ends":
-            return _ends(pair, t)
+            return pages.ends(pair, t)
         case "maps":
-            return _maps(pair, choice, t)
+            return pages.maps(pair, choice, t)
         case "local":
-            return _local(pair, choice, t)
+            return pages.local(pair, choice, t)
         case "global":
-            return _global(pair, choice, t)
-    return _frames(pair, choice, beside, steps, t)
-
-
-def _ends(pair: Shape, t: float) -> Drawing:
-    numbers = {
-        "source": pair.source,
-        "target": pair.target,
-        "faces": pair.faces,
-        "along": pair.along,
-        "band": _morph_stages.band(pair, t),
-    }
-    return Drawing(_morph_stages.ends(pair, t), numbers)
-
-
-def _maps(pair: Shape, choice: Choice, t: float) -> Drawing:
-    at = _morph.apart(pair, choice, t)[1]
-    chosen = _morph_stages.shown_maps(pair)
-    numbers = {
-        "maps": _morph.apart(pair, choice, 1.0)[1][chosen],
-        "maps_at_t": at[chosen],
-        "source": pair.source[pair.faces[chosen]],
-        "target": pair.target[pair.faces[chosen]],
-    }
-    return Drawing(_morph_stages.maps(pair, at, t), numbers)
-
-
-def _local(pair: Shape, choice: Choice, t: float) -> Drawing:
-    corners, at = _morph.apart(pair, choice, t)
-    place = _morph_stages.stage(pair, _extents(pair, choice))
-    gap = _morph_stages.gaps(pair, corners).max() / _morph_stages.side(pair)
-    said = f"corners that should meet are up to {gap:.1f} edges from their middle"
-    picture = _morph_stages.torn(pair, corners, place, t, said)
-    return Drawing(picture, {"corners": corners, "maps": at, "largest_gap": gap})
-
-
-def _global(pair: Shape, choice: Choice, t: float) -> Drawing:
-    way = _morph.way(pair, choice)
-    found = way.at(np.array([t]))
-    place = _morph_stages.stage(
-        pair, np.concatenate([_extents(pair, choice), way.measured.vertices.reshape(-1, 2)])
-    )
-    least, count = float(found.det.min()), int(found.flipped.sum())
-    said = rf"{count} of {len(pair.faces)} flipped, least $\det B_i = {least:.2f}$"
-    picture = _morph_stages.stitched(pair, found.vertices[0], found.flipped[0], place, t, said)
-    return Drawing(picture, {"vertices": found.vertices[0], "det": found.det[0], **way.numbers})
-
-
-def _extents(pair: Shape, choice: Choice) -> np.ndarray:
-    """All that the torn triangles reach at some times; shape (k, 2)."""
-    moments = np.linspace(0.0, 1.0, 9)
-    return np.concatenate([_morph.apart(pair, choice, float(t))[0].reshape(-1, 2) for t in moments])
-
-
-def _frames(pair: Shape, choice: Choice, beside: str, steps: int, t: float) -> Drawing:
-    choices = [choice]
-    if beside != "none":
-        choices.append(replace(choice, energy=beside, angles="consistent"))
-    times = np.concatenate([np.linspace(0.0, t, steps + 1), np.linspace(t, 1.0, steps + 1)[1:]])
-    both = choice.energy == "symmetric"
-    strips = []
-    for asked in choices:
-        way = _morph.way(pair, asked)
-        strips.append(_morph_strip.Strip(_name(asked), way, way.at(times), way.back(times) if both else None))
-    numbers: dict[str, object] = {"times": times}
-    for k, strip in enumerate(strips):
-        suffix = "" if k == 0 else "_beside"
-        shown = {
-            "vertices": strip.frames.vertices,
-            "flipped_in_frames": strip.frames.flipped.sum(axis=1),
-            **strip.way.numbers,
-        }
-        if strip.back is not None:
-            shown["back"] = strip.back
-        numbers |= {name + suffix: value for name, value in shown.items()}
-    return Drawing(_morph_strip.picture(strips, t), numbers)
-
-
-def _name(choice: Choice) -> str:
-    """A row's title: the energy, and the input that matters."""
-    name = (
-        rf"{choice.w:g} E^F + {1.0 - choice.w:g} E^R"
-        if choice.energy == "balanced"
-        else _NAMES[choice.energy]
-    )
-    if choice.constraint == "loci":
-        return f"${name}$, nose and tail on given curves"
-    if choice.constraint == "held":
-        return f"${name}$, barycentre on a curve, an edge held"
-    taken = (
-        r"angles in $(-180^{\circ}, 180^{\circ}]$" if choice.angles == "principal" else "consistent angles"
-    )
-    held = ", an edge held" if choice.forgives else ""
-    return f"${name}$, {taken}{held}"
+            return pages.whole(pair, choice, t)
+    return pages.frames(pair, choice, beside, steps, t)

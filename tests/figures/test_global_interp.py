@@ -1,0 +1,182 @@
+"""What the plates of global interpolation claim: who flips, who does not, and that the ends are met."""
+
+import numpy as np
+import pytest
+
+from lietool import figure, paths
+from lietool.mesh import io, shapes, topology
+
+GLOBAL = figure.load("global-interp", (paths.FIGURES,))
+HALF = 20
+
+
+def turned(V, F):
+    """How many triangles are turned over, by areas of our own."""
+    a, b, c = (V[F[:, k]] for k in range(3))
+    u, v = (b - a) @ (1.0, 1.0j), (c - a) @ (1.0, 1.0j)
+    return int(np.sum((np.conj(u) * v).imag <= 0.0))
+
+
+@pytest.mark.parametrize("name", shapes.SHAPES)
+class TestShapes:
+    def test_the_triangles_are_good_in_both(self, name):
+        pair = shapes.SHAPES[name]()
+        assert 300 <= len(pair.faces) <= 700
+        for V in (pair.source, pair.target):
+            assert (topology.areas(V, pair.faces) > 0.0).all()
+            edges = V[pair.faces] - V[np.roll(pair.faces, 1, axis=1)]
+            u = edges / np.linalg.norm(edges, axis=-1, keepdims=True)
+            cosines = -np.sum(u * np.roll(u, 1, axis=1), axis=-1)
+            assert np.degrees(np.arccos(cosines)).min() > 12.0
+
+    def test_it_is_one_disc(self, name):
+        pair = shapes.SHAPES[name]()
+        assert len(topology.boundary(pair.faces)) == 1
+        edges = topology.edges("test", pair.faces).ends
+        assert len(pair.source) - len(edges) + len(pair.faces) == 1
+
+    def test_it_is_the_same_every_time(self, name):
+        first = shapes.SHAPES[name]()
+        shapes.SHAPES[name].cache_clear()
+        again = shapes.SHAPES[name]()
+        assert np.array_equal(first.target, again.target) and np.array_equal(first.faces, again.faces)
+
+
+class TestLoci:
+    def test_e_f_flips_most_of_the_fish(self, plate):
+        shown = plate("B6.5").numbers
+        assert shown["flipped"][HALF] > 0.7 * len(shapes.fish().faces)
+        assert shown["least_det"].min() < -1.0 and shown["area"].min() < 0.0
+        assert shown["flipped_in_frames"][2] == turned(shown["vertices"][2], shapes.fish().faces)
+
+    def test_e_r_flips_none(self, plate):
+        shown = plate("B6.7").numbers
+        assert shown["flipped"].max() == 0 and shown["least_det"].min() > 0.5
+        assert all(turned(V, shapes.fish().faces) == 0 for V in shown["vertices"])
+
+    def test_the_curves_wind_a_full_turn_away(self):
+        pair = shapes.fish()
+        a, b = pair.marks["nose"], pair.marks["tail"]
+        shown = [
+            GLOBAL.draw(**GLOBAL.plate_params("B6.7") | {"winding": k, "steps": 4}).numbers for k in (0, -1)
+        ]
+        turns = []
+        for numbers in shown:
+            chord = (numbers["vertices"][:, a] - numbers["vertices"][:, b]) @ (1.0, 1.0j)
+            turns.append(np.angle(chord[1:] / chord[:-1]).sum())
+            middle = 0.5 * (numbers["vertices"][:, a] + numbers["vertices"][:, b])
+            assert np.abs(middle).max() < 1e-12
+        assert turns[0] - turns[1] == pytest.approx(2.0 * np.pi)
+        mean = np.average(shown[0]["theta"], weights=topology.areas(pair.source, pair.faces))
+        assert abs(turns[0] - mean) < np.pi
+
+    def test_without_winding_neither_flips(self):
+        for energy in ("frobenius", "similarity"):
+            params = GLOBAL.plate_params("B6.5") | {"winding": 0, "energy": energy}
+            assert GLOBAL.draw(**params).numbers["flipped"].max() == 0
+
+
+class TestLargeRotations:
+    def test_the_snake_rolls_up_by_more_than_540_degrees(self, plate):
+        theta = plate("B6.8").numbers["theta_beside"]
+        assert np.degrees(np.ptp(theta)) > 540.0
+
+    def test_e_f_with_principal_angles_breaks_it(self, plate):
+        shown = plate("B6.6").numbers
+        assert np.abs(shown["theta"]).max() <= np.pi
+        assert shown["flipped"].max() >= 3 and shown["least_det"].min() < -0.2
+
+    def test_e_r_with_the_same_input_does_not(self, plate):
+        shown = plate("B6.8").numbers
+        assert np.array_equal(shown["theta"], plate("B6.6").numbers["theta"])
+        assert shown["flipped"].max() == 0 and shown["least_det"].min() > 0.3
+
+    def test_nor_does_e_f_with_consistent_angles(self, plate):
+        shown = plate("B6.8").numbers
+        assert shown["flipped_beside"].max() == 0 and shown["least_det_beside"].min() > 0.3
+        # A thousandth of what the broken snake costs.
+        assert shown["energy_beside"].max() < 1e-3 * plate("B6.6").numbers["energy"].max()
+
+    def test_e_r_does_not_depend_on_the_angles(self, plate):
+        params = GLOBAL.plate_params("B6.8")
+        other = GLOBAL.draw(**params | {"angles": "consistent"}).numbers
+        assert other["vertices"] == pytest.approx(plate("B6.8").numbers["vertices"], abs=1e-9)
+
+
+class TestStages:
+    def test_every_strip_begins_and_ends_with_the_shapes(self, plate):
+        for plate_id in GLOBAL.plates:
+            params = GLOBAL.plate_params(plate_id)
+            if params["stage"] == "frames":
+                pair, V = shapes.SHAPES[params["example"]](), plate(plate_id).numbers["vertices"]
+                assert V[0] == pytest.approx(pair.source, abs=1e-9)
+                assert V[-1] == pytest.approx(pair.target, abs=1e-9)
+
+    def test_local_maps_tear_it_apart_and_global_ones_do_not(self, plate):
+        torn = plate("B6.3").numbers
+        pair = shapes.gecko()
+        assert torn["largest_gap"] > 1.0
+        P = pair.source[pair.faces]
+        for corners, A, p in zip(torn["corners"][::50], torn["maps"][::50], P[::50], strict=True):
+            assert corners[1] - corners[0] == pytest.approx(A @ (p[1] - p[0]), abs=1e-12)
+        assert plate("B6.4").numbers["det"].min() > 0.3
+
+    def test_apart_at_the_ends_it_is_whole(self):
+        for t in (0.0, 1.0):
+            assert GLOBAL.draw(stage="local", t=t).numbers["largest_gap"] < 1e-9
+
+    def test_maps_carry_triangles_to_triangles(self, plate):
+        shown = plate("B6.2").numbers
+        assert len(shown["maps"]) == 3
+        for A, P, Q in zip(shown["maps"], shown["source"], shown["target"], strict=True):
+            assert (P[1:] - P[0]) @ A.T == pytest.approx(Q[1:] - Q[0])
+
+
+class TestEnergies:
+    def test_points_give_up_small_triangles(self, plate):
+        shown = plate("G6.1").numbers
+        assert shown["least_det"].min() < shown["least_det_beside"].min()
+
+    def test_errors_up_to_similarity_agree_in_substance(self, plate):
+        shown = plate("G6.2").numbers
+        assert shown["flipped"].max() == shown["flipped_beside"].max() == 0
+
+    def test_a_balance_keeps_more_of_the_area(self, plate):
+        shown = plate("G6.3").numbers
+        assert shown["area"].min() > shown["area_beside"].min() + 0.1
+
+    def test_the_symmetrised_error_is_symmetric(self, plate):
+        shown = plate("G6.4").numbers
+        assert np.abs(shown["vertices"] - shown["back"]).max() < 1e-10
+        assert shown["asymmetry"].max() < 1e-10 and shown["asymmetry_beside"].max() > 1e-3
+
+    def test_the_somersault(self, plate):
+        shown, pair = plate("G6.5").numbers, shapes.cat()
+        assert shown["flipped"].max() == 0
+        a, b = pair.marks["inner fore"], pair.marks["inner hind"]
+        chord = (shown["vertices"][:, a] - shown["vertices"][:, b]) @ (1.0, 1.0j)
+        turn = np.angle(chord[1:] / chord[:-1]).sum()
+        assert turn == pytest.approx(np.angle(chord[-1] / chord[0]) - 2.0 * np.pi)
+
+
+class TestFiles:
+    def test_two_outlines(self, tmp_path):
+        for name, d in (("a", "M0 0 H40 V10 H0 Z"), ("b", "M0 0 H10 V40 H0 Z")):
+            file = tmp_path / f"{name}.svg"
+            file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg"><path d="{d}"/></svg>')
+        params = {"source": tmp_path / "a.svg", "target": tmp_path / "b.svg", "stage": "frames"}
+        shown = GLOBAL.draw(**params).numbers
+        assert shown["flipped"].max() == 0
+
+    def test_two_meshes(self, tmp_path):
+        pair = shapes.fish()
+        for name, V in (("a", pair.source), ("b", pair.target)):
+            (tmp_path / f"{name}.obj").write_bytes(io.obj(V, pair.faces))
+        shown = GLOBAL.draw(stage="global", source=tmp_path / "a.obj", target=tmp_path / "b.obj").numbers
+        assert len(shown["det"]) == len(pair.faces) and shown["det"].min() > 0.5
+
+    def test_one_is_not_enough(self, tmp_path):
+        file = tmp_path / "a.svg"
+        file.write_text("<svg/>")
+        with pytest.raises(ValueError, match="given together; got only a source"):
+            GLOBAL.draw(source=file)
