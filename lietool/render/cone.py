@@ -11,7 +11,7 @@ from lietool.render.camera import Camera
 from lietool.render.globe import joined
 
 # Of the stems of the ellipses, over the height of the view.
-_STEM = 0.045
+STEM = 0.045
 
 
 def drawn(S: np.ndarray) -> np.ndarray:
@@ -69,7 +69,7 @@ def ellipses(
     up = side * camera.axes[1]
     records: list[scene.Record] = []
     for at, matrix, (fill, edge) in zip(drawn(S), S, colors, strict=True):
-        foot = at + _STEM * camera.height * up
+        foot = at + STEM * camera.height * up
         middle = foot + size * float(np.linalg.norm(matrix[1])) * up
         rim = middle + plane.moved(matrix, around) @ camera.axes[:2]
         records.append(scene.Lines([at, foot], edge, style.THIN))

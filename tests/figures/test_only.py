@@ -31,6 +31,8 @@ def others(parameter: Parameter, value: object) -> list[object]:
         return [kind(param.low + part * span) for part in (0.37, 0.71, 0.93)]
     if parameter.kind == "vector":
         return [tuple(0.7 * x + 0.13 * (i + 1) for i, x in enumerate(value))]  # type: ignore[arg-type]
+    if parameter.kind == "bool":
+        return [not value]
     return list(param.choices) or ["SO,GL"]
 
 
