@@ -5,7 +5,9 @@ and the vertices v(t) are those whose maps B_i(t) come nearest to the A_i(t), in
 under the constraints given.
 """
 
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +27,9 @@ Index = NDArray[np.intp]
 
 BLOCK = 4_000_000
 """Frames times triangles that are solved at once: their right sides take some hundred megabytes."""
+
+SHARED = 5_000
+"""From so many triangles on, frames with a matrix of their own are solved by all processors."""
 
 
 def local_maps(source: ArrayLike, target: ArrayLike, F: ArrayLike) -> Array:
@@ -146,10 +151,30 @@ def solve(prepared: Prepared, t: ArrayLike) -> Result:
     freedom.require("shape.solve", prepared.freedoms, rows)
     v, residual = np.empty((len(times), n), complex), np.empty(len(times))
     step = max(1, BLOCK // len(prepared.faces)) if prepared.is_static else 1
-    for first in range(0, len(times), step):
-        frames = np.arange(first, min(first + step, len(times)))
-        v[frames], residual[frames] = _frames(prepared, rows, times, frames)
+    blocks = [np.arange(k, min(k + step, len(times))) for k in range(0, len(times), step)]
+    solved = _each(lambda frames: _frames(prepared, rows, times, frames), blocks, _workers(prepared))
+    for frames, found in zip(blocks, solved, strict=True):
+        v[frames], residual[frames] = found
     return Result(prepared, times, v.view(float).reshape(len(times), n, 2), residual)
+
+
+def _workers(prepared: Prepared) -> int:
+    """How many frames to solve at the same time: factors of large matrices must fit into memory together."""
+    size = len(prepared.faces)
+    if prepared.is_static or size < SHARED:
+        return 1
+    return max(1, min(os.cpu_count() or 1, BLOCK // size))
+
+
+def _each(
+    f: Callable[[Index], tuple[Complex, Array]], blocks: Iterable[Index], workers: int
+) -> Iterator[tuple[Complex, Array]]:
+    """Call a function for every block, in their order; SuperLU lets other threads run."""
+    if workers == 1:
+        yield from map(f, blocks)
+        return
+    with ThreadPoolExecutor(workers) as pool:
+        yield from pool.map(f, blocks)
 
 
 def _frames(prepared: Prepared, rows: Rows, times: Array, frames: Index) -> tuple[Complex, Array]:
