@@ -122,11 +122,12 @@ def _order(pattern: Any) -> Index:
         return np.zeros(0, np.intp)
     # A matrix of this pattern that is diagonally dominant: only the pattern matters.
     data = np.where(pattern.indices == np.repeat(np.arange(n), np.diff(pattern.indptr)), float(n), -1e-3)
-    factor = _superlu(csc_array((data, pattern.indices, pattern.indptr), (n, n)), False)
+    factor = superlu(csc_array((data, pattern.indices, pattern.indptr), (n, n)), False)
     return np.argsort(factor.perm_c).astype(np.intp)
 
 
-def _superlu(matrix: Any, ordered: bool) -> Any:
+def superlu(matrix: Any, ordered: bool) -> Any:
+    """Factor a positive definite matrix, in its own order or in one that keeps the factors sparse."""
     from scipy.sparse.linalg import splu
 
     return splu(
@@ -161,7 +162,7 @@ class Factor:
         place, indices, indptr = at.cross
         self.cross = csc_array((source[place], indices, indptr), (free, fixed))
         # Where every vertex is given there is nothing to solve.
-        self.solver = _superlu(self.inner, at.ordered) if free else None
+        self.solver = superlu(self.inner, at.ordered) if free else None
         self.norm = float(np.max(abs(self.inner).sum(axis=0), initial=0.0))
         self.rows, self.rows_fixed, self.delta = rows[:, at.free], rows[:, at.fixed], delta
         self.beside = self._base(self.rows.astype(self.inner.dtype)) if len(rows) else self.rows

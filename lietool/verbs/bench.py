@@ -3,17 +3,15 @@
 import json
 import os
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
-from lietool.verbs import _bench_accuracy, _bench_speed, _bench_tables, _table
+from lietool.verbs import _bench_accuracy, _bench_interp, _bench_process, _bench_speed, _bench_tables, _table
 
 # What the project promises; nothing fails where a machine is slower.
 HELP_FACTOR, COLD_SECONDS, PLATE_SECONDS, MEMORY_FACTOR = 1.3, 0.6, 0.4, 1.05
@@ -25,7 +23,14 @@ def command() -> None:
     """Measure accuracy, speed, the tables of the papers, and how long starting and drawing take."""
 
 
-for _subcommand in (_bench_accuracy.accuracy, _bench_speed.speed, _bench_tables.table1, _bench_tables.table2):
+for _subcommand in (
+    _bench_accuracy.accuracy,
+    _bench_speed.speed,
+    _bench_tables.table1,
+    _bench_tables.table2,
+    _bench_interp.interp,
+    _bench_interp.interp_work,
+):
     command.add_command(_subcommand)
 
 
@@ -73,10 +78,10 @@ def measure(runs: int) -> dict[str, Any]:
         # In turn, so that a machine that slows down slows all of them down.
         for run in range(runs + 1):
             for name, call in calls.items():
-                seconds = _timed(call)[0]
+                seconds = _bench_process.timed(call)[0]
                 if run:
                     times[name].append(seconds)
-    worker = json.loads(_timed([*lietool, "bench", "work"])[1])
+    worker = json.loads(_bench_process.timed([*lietool, "bench", "work"])[1])
     seconds = {name: statistics.median(values) for name, values in times.items()}
     return {"seconds": seconds, **worker, "cpus": os.cpu_count(), "runs": runs}
 
@@ -97,31 +102,10 @@ def work() -> None:
             drawing = loaded.draw(**loaded.plate_params(plate_id))
             export.png(draw.render(drawing.picture).image, {})
             seconds.setdefault(plate_id, time.perf_counter() - start)
-        megabytes.append(_peak())
+        megabytes.append(_bench_process.peak())
     # In the second round everything is loaded, and the memory that the first gave back is in use again.
     memory = {"twice": megabytes[1], "six times": megabytes[-1]}
     click.echo(json.dumps({"plates": seconds, "megabytes": memory, "backend": backend}))
-
-
-def _peak() -> float:
-    """The most memory that this process had, in megabytes."""
-    try:
-        import resource
-    except ImportError:
-        return float("nan")
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak / (1e6 if sys.platform == "darwin" else 1e3)
-
-
-def _timed(call: Sequence[str]) -> tuple[float, str]:
-    start = time.perf_counter()
-    done = subprocess.run(call, capture_output=True, text=True)
-    seconds = time.perf_counter() - start
-    if done.returncode:
-        # Its own message and exit code say what is wrong, such as that nothing renders here.
-        click.echo(done.stderr, err=True, nl=False)
-        raise click.exceptions.Exit(done.returncode)
-    return seconds, done.stdout
 
 
 def _show(found: dict[str, Any]) -> None:
