@@ -1,9 +1,11 @@
 """A computed example for an equation: expressions of the list, or a function called on small fixed input."""
 
 import importlib
+import importlib.util
 import inspect
 import re
 from collections.abc import Callable, Iterator
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -44,7 +46,7 @@ def of_function(name: str) -> list[tuple[str, str]]:
 
 
 def of_expressions(expressions: list[str]) -> list[tuple[str, str]]:
-    """Compute expressions in which ``np`` and the modules of `lietool.lie` are known.
+    """Compute expressions in which ``np`` and the modules of `lietool.lie` and `lietool.interp` are known.
 
     Parameters
     ----------
@@ -61,12 +63,17 @@ def of_expressions(expressions: list[str]) -> list[tuple[str, str]]:
     for text in expressions:
         names, _, expression = text.rpartition(" = ")
         for module in set(_MODULE.findall(expression)) - known.keys():
-            known[module] = importlib.import_module(f"lietool.lie.{module}")
+            known[module] = _module(module)
         value = eval(expression, known)
         kept = names.split(", ") if names else []
         known |= dict(zip(kept, value if len(kept) > 1 else [value], strict=False))
         lines.append((text, show(value)))
     return lines
+
+
+def _module(name: str) -> ModuleType:
+    part = "lie" if importlib.util.find_spec(f"lietool.lie.{name}") else "interp"
+    return importlib.import_module(f"lietool.{part}.{name}")
 
 
 def show(value: Any) -> str:

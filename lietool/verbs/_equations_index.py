@@ -18,7 +18,7 @@ _MATHEMATICS = ("lie", "mesh", "interp", "deform")
 # Of several functions the plainest comes first; those of other modules stand between these and the last.
 _FIRST = (
     *("so2", "so3", "quaternion", "euler", "se2", "se3"),
-    *("affine", "polar", "sym", "blend", "generic", "dual_complex"),
+    *("affine", "polar", "sym", "blend", "generic", "dual_complex", "triangle", "energy"),
 )
 _LAST = ("groups", "series")
 _CITES = re.compile(rf"^({'|'.join(TEXTS.values())}): (.+(?:\n\(.+)*)", re.MULTILINE)

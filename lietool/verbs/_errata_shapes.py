@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from lietool.interp import energy
 from lietool.lie import so2
 from lietool.verbs._errata import Erratum, Outcome, erratum, outcome
 
@@ -17,19 +18,11 @@ def _hessian(A: Array) -> Array:
     return 2.0 * (np.eye(4) - (np.outer(a, a) + np.outer(b, b)) / (a @ a))
 
 
-def _energy(B: Array, A: Array) -> float:
-    """Return E^R by (6.4): the least sum of squares over s R_delta = x I + y J."""
-    span = np.stack([A.ravel(), (J @ A).ravel()], axis=-1)
-    x = np.linalg.lstsq(span, B.ravel(), rcond=None)[0]
-    return float(np.sum((B.ravel() - span @ x) ** 2))
-
-
 def _second_differences(A: Array) -> Array:
     """Return the Hessian of E^R from values alone; of a quadratic form they are exact but for rounding."""
     unit = np.eye(4).reshape(4, 2, 2)
-    single = np.array([_energy(B, A) for B in unit])
-    pairs = np.array([[_energy(B + C, A) for C in unit] for B in unit])
-    return pairs - single[:, None] - single
+    single = energy.error(unit, A, energy.SIMILARITY)
+    return energy.error(unit[:, None] + unit, A, energy.SIMILARITY) - single[:, None] - single
 
 
 @erratum(
@@ -42,7 +35,7 @@ def _second_differences(A: Array) -> Array:
 )
 def time_in_the_matrix() -> Outcome:
     start, end = np.eye(2), so2.exp(np.array(1.0)) @ np.diag([3.0, 0.5])
-    apart = float(np.linalg.norm(_hessian(end) - _hessian(start)))
+    apart = float(np.linalg.norm(_second_differences(end) - _second_differences(start)))
     rest = np.linalg.norm(_second_differences(end) - _hessian(end))
     return Outcome(0.0, apart, apart, float(rest))
 
@@ -91,7 +84,7 @@ def where_the_shape_lies() -> Outcome:
 def kernel() -> Outcome:
     A = so2.exp(np.array(1.0)) @ np.diag([3.0, 0.5])
     d = np.linalg.eigvalsh(_second_differences(A))
-    inside = max(_energy(1.7 * so2.exp(np.array(t)) @ A, A) for t in (0.0, 0.4, 2.0))
+    inside = float(energy.error(1.7 * so2.exp([0.0, 0.4, 2.0]) @ A, A, energy.SIMILARITY).max())
     rest = max(float(np.linalg.norm(d - [0.0, 0.0, 2.0, 2.0])), inside)
     return Outcome(float("nan"), np.array(d, dtype=float), float(np.sum(d < 1.0)), rest)
 

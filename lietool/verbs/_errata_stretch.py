@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from lietool.interp import triangle
 from lietool.lie import affine, polar, so3, sym
 from lietool.verbs._errata import Erratum, Outcome, erratum, outcome
 
@@ -54,9 +55,9 @@ def last_factor() -> Outcome:
     example="S = diag(0.2, 3): least eigenvalue on [0, 1], printed 0; it is 0 at t = 1.25",
 )
 def convex() -> Outcome:
-    S, t = np.diag([0.2, 3.0]), np.linspace(0.0, 1.0, 101)[:, None, None]
-    least = float(np.min(np.linalg.eigvalsh((1.0 - t) * np.eye(2) + t * S)))
-    beyond = float(np.min(np.abs(np.linalg.eigvalsh(-0.25 * np.eye(2) + 1.25 * S))))
+    S = np.diag([0.2, 3.0])
+    least = float(np.min(np.linalg.eigvalsh(triangle.arap(S, np.linspace(0.0, 1.0, 101)))))
+    beyond = float(np.min(np.abs(np.linalg.eigvalsh(triangle.arap(S, 1.25)))))
     return Outcome(0.0, least, least, beyond)
 
 

@@ -73,7 +73,9 @@ class TestLaws:
     def test_where_the_shape_lies_does_not_matter(self):
         for error in (energy.POINT, energy.POINT_SIMILARITY):
             here = energy.error(B, A, error, CORNERS)
-            assert energy.error(B, A, error, CORNERS + [300.0, -50.0]) == pytest.approx(here, rel=1e-8)
+            assert energy.error(B, A, error, CORNERS + np.array([300.0, -50.0])) == pytest.approx(
+                here, rel=1e-8
+            )
         # As printed, with the corners as they lie, it does.
         printed = [
             np.sum(np.einsum("nij,nkj->nki", A - B, CORNERS + shift) ** 2, axis=(1, 2))
@@ -101,7 +103,7 @@ class TestLaws:
                 Q = np.array(
                     [[form.first[0], form.mixed[0]], [np.conj(form.mixed[0]), form.second[0]]], complex
                 )
-                assert Q == pytest.approx(np.conj(Q.T))
+                assert pytest.approx(np.conj(Q.T)) == Q
                 values = np.linalg.eigvalsh(Q)
                 # A complex dimension is two real ones.
                 assert 2 * int(np.sum(values > 1e-12)) == rank

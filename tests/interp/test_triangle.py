@@ -41,7 +41,7 @@ class TestMaps:
         expected = np.swapaxes(
             np.linalg.solve(np.swapaxes(homogeneous[0], -1, -2), np.swapaxes(homogeneous[1], -1, -2)), -1, -2
         )
-        assert A == pytest.approx(expected, rel=1e-9, abs=1e-9)
+        assert pytest.approx(expected, rel=1e-9, abs=1e-9) == A
         assert (A[:, 2] == [0.0, 0.0, 1.0]).all()
 
     def test_far_from_the_origin(self):
