@@ -44,7 +44,7 @@ Corners = tuple[float, float, float, float, float, float]
             caption=(
                 "A = R S is a point of SO(2) x Sym+(2). Left: R(t) turns evenly to R. Right: S(t) goes "
                 "straight from I to S in the cone of positive definite matrices (ellipses: the unit "
-                "disc under S(t)). Both together move the triangle, large for the marked t, below for "
+                "disc under S(t)). Both together move the triangle: A(t) for the marked t, below for "
                 "equal steps. From 0 to 1 the line stays in the cone, which is convex; farther on it "
                 "leaves it (cross), and the triangle collapses and turns over (red)."
             ),
@@ -56,7 +56,7 @@ Corners = tuple[float, float, float, float, float, float]
             caption=(
                 "The same map as a point of SO(2) x Sym+(2). The rotation turns as before, but the "
                 "stretch S(t) = exp(t log S) goes along a curve that never leaves the cone, however far "
-                "t goes on: no triangle collapses. Large: that of the marked t; below: those of equal "
+                "t goes on: no triangle collapses. A(t): that of the marked t; below: those of equal "
                 "steps."
             ),
             params={"method": "logexp", "steps": 3, "beyond": 0.67},
@@ -68,7 +68,8 @@ Corners = tuple[float, float, float, float, float, float]
                 "From A on the left by the polar decomposition to a rotation and a stretch; down to a "
                 "space where straight lines may be drawn, the angle by the logarithm, the stretch as it "
                 "is; from there along the line from the identity to the moment t; up, and multiplied to "
-                "A(t). For t outside [0, 1] the stretch may not be positive definite, and is then red."
+                "A(t). The upward arrow of the stretch needs its determinant to be positive: for t "
+                "outside [0, 1] it may not be, and is then red."
             ),
             params={"method": "arap", "equations": True, "t": 0.4},
         ),
