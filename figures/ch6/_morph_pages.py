@@ -8,14 +8,13 @@ from lietool.figure import Drawing
 from lietool.mesh.shapes import Shape
 
 from . import _morph, _morph_stages, _morph_strip
-from ._morph import Choice
 
 _NAMES = {
     "frobenius": "E^F",
     "point": "E^P",
     "similarity": "E^R",
     "point-similarity": "E^S",
-    "symmetric": r"E^F_i(t) + E_i^{F,-1}(1-t)",
+    "symmetric": "E^F",
 }
 
 
@@ -31,8 +30,10 @@ def ends(pair: Shape, t: float) -> Drawing:
     return Drawing(_morph_stages.ends(pair, t), numbers)
 
 
-def maps(pair: Shape, choice: Choice, t: float) -> Drawing:
+def maps(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
     """Return some triangles and their maps."""
+    # A map alone turns by less than half a turn; what its neighbours do is not asked here.
+    choice = replace(choice, angles="principal", turns=0)
     at = _morph.apart(pair, choice, t)[1]
     chosen = _morph_stages.shown_maps(pair)
     numbers = {
@@ -44,7 +45,7 @@ def maps(pair: Shape, choice: Choice, t: float) -> Drawing:
     return Drawing(_morph_stages.maps(pair, at, t), numbers)
 
 
-def local(pair: Shape, choice: Choice, t: float) -> Drawing:
+def local(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
     """Return all triangles at time t, each by its own map."""
     corners, at = _morph.apart(pair, choice, t)
     place = _morph_stages.stage(pair, _extents(pair, choice))
@@ -54,7 +55,7 @@ def local(pair: Shape, choice: Choice, t: float) -> Drawing:
     return Drawing(picture, {"corners": corners, "maps": at, "largest_gap": gap})
 
 
-def whole(pair: Shape, choice: Choice, t: float) -> Drawing:
+def whole(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
     """Return the whole shape at time t."""
     way = _morph.way(pair, choice)
     found = way.at(np.array([t]))
@@ -67,13 +68,13 @@ def whole(pair: Shape, choice: Choice, t: float) -> Drawing:
     return Drawing(picture, {"vertices": found.vertices[0], "det": found.det[0], **way.numbers})
 
 
-def _extents(pair: Shape, choice: Choice) -> np.ndarray:
+def _extents(pair: Shape, choice: _morph.Choice) -> np.ndarray:
     """All that the torn triangles reach at some times; shape (k, 2)."""
     moments = np.linspace(0.0, 1.0, 9)
     return np.concatenate([_morph.apart(pair, choice, float(t))[0].reshape(-1, 2) for t in moments])
 
 
-def frames(pair: Shape, choice: Choice, beside: str, steps: int, t: float) -> Drawing:
+def frames(pair: Shape, choice: _morph.Choice, beside: str, steps: int, t: float) -> Drawing:
     """Return a strip of frames, or two of them."""
     choices = [choice]
     if beside != "none":
@@ -83,7 +84,7 @@ def frames(pair: Shape, choice: Choice, beside: str, steps: int, t: float) -> Dr
     strips = []
     for asked in choices:
         way = _morph.way(pair, asked)
-        strips.append(_morph_strip.Strip(_name(asked), way, way.at(times), way.back(times) if both else None))
+        strips.append(_morph_strip.Strip(_name(asked), way, way.at(times), both))
     numbers: dict[str, object] = {"times": times}
     for k, strip in enumerate(strips):
         suffix = "" if k == 0 else "_beside"
@@ -92,25 +93,26 @@ def frames(pair: Shape, choice: Choice, beside: str, steps: int, t: float) -> Dr
             "flipped_in_frames": strip.frames.flipped.sum(axis=1),
             **strip.way.numbers,
         }
-        if strip.back is not None:
-            shown |= {"back": strip.back, "asymmetry": strip.way.asymmetry}
+        if both:
+            shown |= {"back": strip.way.back(times), "asymmetry": strip.way.asymmetry}
         numbers |= {name + suffix: value for name, value in shown.items()}
     return Drawing(_morph_strip.picture(strips, t), numbers)
 
 
-def _name(choice: Choice) -> str:
+def _name(choice: _morph.Choice) -> str:
     """A row's title: the energy, and the input that matters."""
     name = (
         rf"{choice.w:g} E^F + {1.0 - choice.w:g} E^R"
         if choice.energy == "balanced"
         else _NAMES[choice.energy]
     )
+    name = f"symmetrised ${name}$" if choice.energy == "symmetric" else f"${name}$"
     if choice.constraint == "loci":
-        return f"${name}$, nose and tail on given curves"
+        return f"{name}, nose and tail on given curves"
     if choice.constraint == "held":
-        return f"${name}$, barycentre on a curve, an edge held"
+        return f"{name}, barycentre on a curve, an edge held"
     taken = (
         r"angles in $(-180^{\circ}, 180^{\circ}]$" if choice.angles == "principal" else "consistent angles"
     )
     held = ", an edge held" if choice.forgives else ""
-    return f"${name}$, {taken}{held}"
+    return f"{name}, {taken}{held}"

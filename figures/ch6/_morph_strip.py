@@ -10,8 +10,8 @@ from lietool.render import scene, style
 from lietool.render.plane import Plane
 from lietool.render.plot import Axes, number
 
+from . import _morph
 from . import _morph_marks as marks
-from ._morph import MOMENTS, Way
 
 Array = np.ndarray
 
@@ -39,12 +39,12 @@ _TITLE, _LOWEST, _HIGHEST = 846.0, 116.0, 240.0
 
 @dataclass(frozen=True, eq=False)
 class Strip:
-    """A way with its name and its frames at some times; and those of the way back, if they are shown."""
+    """A way with its name and its frames at some times; with two directions to compare, or not."""
 
     name: str
-    way: Way
+    way: _morph.Way
     frames: shape.Result
-    back: Array | None = None
+    both: bool = False
 
 
 def picture(strips: Sequence[Strip], t: float) -> scene.Picture:
@@ -95,7 +95,7 @@ def _center(k: int, columns: int) -> float:
     return _LEFT + (k + 0.5) * (_RIGHT - _LEFT) / columns
 
 
-def _shift(way: Way, t: Array | float) -> Array:
+def _shift(way: _morph.Way, t: Array | float) -> Array:
     """What is at the middle of a column: that of the shape, or where curves are drawn, theirs."""
     x = way.measured.vertices[..., 0]
     middle = 0.5 * (x.min(axis=1) + x.max(axis=1))
@@ -126,7 +126,7 @@ def _row(
     base = 0.5 * (row.low + row.high) - 0.5 * scale * (window[2] + window[3])
     columns = len(frames.t)
     records: list[scene.Record] = []
-    fine = np.linspace(0.0, 1.0, 4 * MOMENTS)
+    fine = np.linspace(0.0, 1.0, 4 * _morph.MOMENTS)
     if way.led.barycentre is not None:
         path = np.asarray(way.led.barycentre(fine))
         x = np.interp(fine, frames.t, [_center(k, columns) for k in range(columns)])
@@ -139,9 +139,6 @@ def _row(
         for _, path in way.led.loci:
             records.append(place.line(np.asarray(path(fine)), style.ROUTE_1, style.EDGE))
         records += marks.drawn(place, way.pair, V, marks.color_at(moment), flipped=turned, eye=0.07 * scale)
-        if strip.back is not None:
-            rim = np.append(way.pair.boundary, way.pair.boundary[0])
-            records.append(place.line(strip.back[k][rim], style.WRONG, style.EDGE, dash=(6.0, 5.0)))
         records += _held(place, way, V)
         if counted:
             records += _counted(place, row.counts, _center(k, columns), way, V, turned)
@@ -149,7 +146,7 @@ def _row(
 
 
 def _counted(
-    place: Plane, height: float, middle: float, way: Way, V: Array, turned: Array
+    place: Plane, height: float, middle: float, way: _morph.Way, V: Array, turned: Array
 ) -> list[scene.Record]:
     """How many triangles are turned over; where they are few, a ring shows where."""
     count = int(turned.sum())
@@ -166,7 +163,7 @@ def _counted(
     return records
 
 
-def _held(place: Plane, way: Way, V: Array) -> list[scene.Record]:
+def _held(place: Plane, way: _morph.Way, V: Array) -> list[scene.Record]:
     """What the constraints hold: the vertices on curves, the edge, the barycentre."""
     records: list[scene.Record] = []
     dots = [V[v] for v, _ in way.led.loci]
@@ -194,7 +191,7 @@ def _plots(strips: Sequence[Strip], t: float, low: float, high: float) -> list[s
         ("area, source = 1", [s.way.area for s in strips], True),
         ("energy over area", [s.way.energy for s in strips], False),
     ]
-    if strips[0].back is not None:
+    if strips[0].both:
         shown[1] = ("from the way back", [s.way.asymmetry for s in strips], False)
     records: list[scene.Record] = []
     for place, (title, curves, one) in enumerate(shown):

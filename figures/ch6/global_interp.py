@@ -5,9 +5,8 @@ from typing import Annotated, Literal
 
 from lietool.figure import Drawing, Param, Plate, Time, figure
 
+from . import _morph, _pairs
 from . import _morph_pages as pages
-from . import _pairs
-from ._morph import Choice
 
 _MOVING = ("stage", "local", "global", "frames")
 _WHOLE = ("stage", "global", "frames")
@@ -151,13 +150,13 @@ _WHOLE = ("stage", "global", "frames")
             title="The symmetrised error",
             equations=("6.2",),
             caption=(
-                "Dashed: the way from the target back to the source, at the time 1 - t. With the symmetrised "
-                "error (above) it is the way there; with E^F alone (below), which is weighted by the areas "
-                "and measured by the maps of one direction, it is a little beside it: the middle plot has "
-                "the distance, over the size of the snake."
+                "In the middle plot, how far the way from the target back to the source passes from the way "
+                "there, over the size of the cat. With E^F alone (below, dashed), weighted by the areas and "
+                "measured by the maps of one direction, the two differ; with the symmetrised error (above) "
+                "they are the same."
             ),
             params={
-                "example": "snake",
+                "example": "cat",
                 "stage": "frames",
                 "constraint": "loci",
                 "winding": 0,
@@ -216,7 +215,12 @@ def global_interp(
     ] = "line",
     winding: Annotated[
         int,
-        Param("full turns that loci or edge are led away from the local maps", low=-2, high=2, only=_WHOLE),
+        Param(
+            "full turns that loci or edge are led away from the local maps",
+            low=-2,
+            high=2,
+            only=("constraint", "loci", "held"),
+        ),
     ] = -1,
     seed: Annotated[
         float,
@@ -245,7 +249,7 @@ def global_interp(
     over, the area of the whole and the energy over t.
     """
     pair = _pairs.pair(example, source, target)
-    choice = Choice(energy, homotopy, angles, constraint, seed, turns, winding, w, weights)
+    choice = _morph.Choice(energy, homotopy, angles, constraint, seed, turns, winding, w, weights)
     match stage:
         case "ends":
             return pages.ends(pair, t)

@@ -185,7 +185,7 @@ def cat() -> Skeleton:
         knee = -0.02 if "fore" in name else 0.06
         leg = [(0.0, 0.0), (knee, -0.50), (-0.5 * knee, -0.96), (0.15, -1.04)]
         bones += _chain(name, parent, _leaning(leg, at, lean), thick)
-    source = {"tail1": -20.0, "tail2": -24.0, "tail3": -22.0, "tail4": -16.0}
+    source = {"tail1": -20.0, "tail2": -24.0, "tail3": -22.0, "tail4": -26.0, "tail5": -38.0}
     source |= {"near fore1": -24.0, "far fore1": 2.0, "near hind1": 20.0, "far hind1": -2.0}
     target = {"back1": 30.0, "back2": -14.0, "neck1": -16.0, "head1": 6.0}
     target |= {"near fore1": 36.0, "near fore2": 16.0, "near fore3": -24.0}
