@@ -34,3 +34,15 @@ def roll() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A long strip, the same rolled up by a turn and a half, and its triangles."""
     V, F = grid(40, 3)
     return V, rolled(V, 3.0 * np.pi), F
+
+
+@pytest.fixture(scope="session")
+def shaken() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A strip of 1444 triangles, the same bent; vertices shaken, and numbered at random."""
+    V, F = grid(39, 20)
+    rng = np.random.default_rng(3)
+    V = V + rng.uniform(-0.2, 0.2, V.shape)
+    number = rng.permutation(len(V))
+    P, Q = np.empty_like(V), np.empty_like(V)
+    P[number], Q[number] = V / 19.0, rolled(V / 19.0, 2.5)
+    return P, Q, number[F]
