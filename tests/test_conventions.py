@@ -1,4 +1,4 @@
-"""The docstrings of `lietool.lie` tell the truth: arguments, shapes, domains, batches, book numbers."""
+"""The docstrings of the mathematics tell the truth: arguments, shapes, domains, batches, book numbers."""
 
 import importlib
 import inspect
@@ -11,7 +11,10 @@ from types import FunctionType
 import numpy as np
 import pytest
 
+import lietool.interp
 import lietool.lie
+import lietool.mesh
+from lietool.interp import triangle
 
 # They serve the others and are no mathematical objects: their arguments are rows, names and messages.
 SUPPORT = ("blocks", "checks", "kernels")
@@ -47,6 +50,18 @@ FUNCTIONS = [
     pytest.param(f, id=f"{name}.{f.__name__}")
     for name in MODULES
     for f in public(importlib.import_module(f"lietool.lie.{name}"))
+]
+# Of the homotopies the batch comes after that of times; tests/interp tries them.
+FUNCTIONS += [
+    pytest.param(f, id=f"triangle.{f.__name__}")
+    for f in (triangle.frame, triangle.affine_map, triangle.has_real_log, triangle.principal_angle)
+]
+# Functions on whole meshes: no batches, but what they say of their arguments is as true.
+OF_MESHES = [
+    pytest.param(f, id=f"{module.name}.{f.__name__}")
+    for package in (lietool.interp, lietool.mesh)
+    for module in pkgutil.iter_modules(package.__path__)
+    for f in public(importlib.import_module(f"{package.__name__}.{module.name}"))
 ]
 
 
@@ -269,3 +284,13 @@ def test_wrong_shape_is_refused(f):
             broken[i] = "abc"
             with pytest.raises(ValueError, match=rf": {names[i]} must be real numbers"):
                 f(*broken)
+
+
+@pytest.mark.parametrize("f", OF_MESHES)
+def test_a_function_on_meshes_says_what_it_takes(f):
+    doc = inspect.getdoc(f)
+    assert doc, "no docstring"
+    assert doc.splitlines()[0].endswith((".", ":")), "one sentence first"
+    said = [name for line in section(f, "Parameters") for name in line.partition(" : ")[0].split(", ")]
+    if said:
+        assert said == list(inspect.signature(f).parameters)

@@ -48,7 +48,10 @@ def frame(triangle: ArrayLike) -> Array:
     ValueError
         If it has another shape or is not finite.
     """
-    p = checks.array("triangle.frame", "triangle", triangle, (3, 2))
+    return _frame(checks.array("triangle.frame", "triangle", triangle, (3, 2)))
+
+
+def _frame(p: Array) -> Array:
     A = np.zeros((*p.shape[:-2], 3, 3))
     A[..., :2, :2] = sides(p)
     A[..., :2, 2] = p[..., 2, :]
@@ -63,8 +66,10 @@ def affine_map(source: ArrayLike, target: ArrayLike) -> Array:
 
     Parameters
     ----------
-    source, target : (..., 3, 2)
-        Their corners.
+    source : (..., 3, 2)
+        The corners of the one.
+    target : (..., 3, 2)
+        The corners of the other.
 
     Returns
     -------
@@ -75,8 +80,10 @@ def affine_map(source: ArrayLike, target: ArrayLike) -> Array:
     ValueError
         If one has another shape or is not finite, or the corners of the source lie on a line.
     """
-    P, Q = frame(source), frame(target)
-    checks_degenerate("triangle.affine_map", "source", P[..., :2, :2])
+    where = "triangle.affine_map"
+    P = _frame(checks.array(where, "source", source, (3, 2)))
+    Q = _frame(checks.array(where, "target", target, (3, 2)))
+    checks_degenerate(where, "source", P[..., :2, :2])
     A = np.broadcast_to(np.eye(3), np.broadcast_shapes(P.shape, Q.shape)).copy()
     A[..., :2, :2] = Q[..., :2, :2] @ inverse(P[..., :2, :2])
     # From corner to corner, not from the inverse of the whole: far from the origin that would lose digits.
@@ -215,6 +222,8 @@ def matrix_log(A: ArrayLike, t: ArrayLike, theta: ArrayLike | None = None) -> Ar
 
 def has_real_log(A: ArrayLike) -> NDArray[np.bool_]:
     """Tell which matrices are exponentials of real matrices.
+
+    Book: 5.2
 
     Those without eigenvalues on the negative real line, and the half turns with a dilation, -c I.
 
