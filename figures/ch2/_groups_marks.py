@@ -82,7 +82,7 @@ class Card:
         (x, y), (w, h), more = self.center, self.size, SHEET * (self.sheets - 1)
         return x - w / 2, y - h / 2 - more, x + w / 2 + more, y + h / 2
 
-    def records(self, alpha: float = 1.0) -> list[scene.Record]:
+    def records(self) -> list[scene.Record]:
         """Return the card: tinted and framed twice if compact, one sheet for each component."""
         records: list[scene.Record] = []
         for k in reversed(range(self.sheets)):
