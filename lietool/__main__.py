@@ -6,8 +6,8 @@ import sys
 
 def main() -> None:
     """Run the command line; an interrupt is quiet even while it is being imported."""
-    # All matrices here are small: threads of the linear algebra would only wait for each other, up to ten times
-    # as long as one takes.  It is read when numpy is loaded.
+    # All matrices here are small: threads of the linear algebra would only wait for each other, up to ten
+    # times as long as one takes.  It is read when numpy is loaded.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         from lietool import cli
