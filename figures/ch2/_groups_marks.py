@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from lietool.lie import groups
 from lietool.lie.group_maps import Node
-from lietool.render import labels, scene, style
+from lietool.render import labels, scene, solids, style
 
 PAGE = (1200.0, 900.0)
 MARGIN = 26.0
@@ -88,7 +88,8 @@ class Card:
         for k in reversed(range(self.sheets)):
             center, z = np.asarray(self.center) + _NEXT * k, 4.0 - 0.1 * k
             outline = _rounded(center, self.size, z)
-            faces = [[0, i, i + 1] for i in range(1, len(outline) - 2)]
+            # Its last point is its first.
+            faces = solids.fan_faces(len(outline) - 1)
             fill = style.BAND if self.compact else style.PAPER
             records.append(scene.Surface(outline, faces, fill, material="flat"))
             records.append(scene.Lines(outline, style.MUTED, style.EDGE, dash=None if self.group else _DASH))

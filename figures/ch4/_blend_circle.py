@@ -12,6 +12,7 @@ from lietool.lie import so2
 from lietool.render import scene, style
 from lietool.render.camera import Box
 from lietool.render.plane import Plane, direction
+from lietool.render.solids import fan_faces
 
 from . import _blend_cone as cone
 
@@ -82,8 +83,7 @@ def records(
 
 def _disc(place: Plane) -> tuple[np.ndarray, np.ndarray]:
     rim = direction(np.linspace(0.0, 2.0 * np.pi, 121))
-    n = np.arange(1, 121)
-    return place.at(np.concatenate([[[0.0, 0.0]], rim])), np.stack([0 * n, n, n + 1], axis=-1)
+    return place.at(np.concatenate([[[0.0, 0.0]], rim])), fan_faces(len(rim) + 1)
 
 
 def _off(ends: Turns) -> np.ndarray:

@@ -101,8 +101,7 @@ def ellipses(
 ) -> list[scene.Record]:
     """Return the disc under each matrix (n, 2, 2), facing the viewer, on a stem up (1) or down (-1)."""
     around = plane.arc((0.0, 0.0), size, 0.0, 2.0 * np.pi, 61)
-    n = np.arange(1, 61)
-    faces = np.stack([0 * n, n, n + 1], axis=-1)
+    faces = solids.fan_faces(len(around) + 1)
     up = side * camera.axes[1]
     records: list[scene.Record] = []
     for at, matrix, (fill, edge) in zip(drawn(S), S, colors, strict=True):
