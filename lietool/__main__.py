@@ -15,6 +15,12 @@ def main() -> None:
         cli.main()
     except KeyboardInterrupt:
         sys.exit(130)
+    except ModuleNotFoundError as error:
+        # What the command line itself is made of: there is nothing yet to report errors with.
+        if error.name != "click":
+            raise
+        sys.stderr.write(f"lietool: {error}. Install it with: pip install click\n")
+        sys.exit(2)
 
 
 if __name__ == "__main__":
