@@ -421,6 +421,11 @@ class TestFolder:
             named = (folder / site.PAGE).read_text().split()
             assert (named == list(old)) == (writes < 5) and all((folder / name).is_file() for name in named)
 
+    def test_a_folder_named_like_a_file_of_ours_is_somebody_elses(self, tmp_path):
+        (tmp_path / site.MARK).touch()
+        (tmp_path / ".notes.part").mkdir()
+        assert ".notes.part" in site.stranger(tmp_path)
+
     def test_what_came_while_it_was_drawn_stays(self, tmp_path):
         old = {site.named("pictures", "T1", b"old", "png"): b"old"}
         site.publish(tmp_path, b"", old)

@@ -50,7 +50,9 @@ def stranger(folder: Path) -> str:
     for path in inside:
         parts = sorted(path.iterdir()) if path.name in _FOLDERS and path.is_dir() else [path]
         for part in parts:
-            if not _is_ours(part.relative_to(folder)):
+            # What is removed later are files: a folder with the name of one holds somebody else's.
+            folded = part.is_dir() and part.relative_to(folder).as_posix() not in _FOLDERS
+            if folded or not _is_ours(part.relative_to(folder)):
                 return f"it holds {part.relative_to(folder)}, which no gallery has"
     return ""
 
