@@ -23,9 +23,10 @@ def write_bytes(path: Path, data: bytes) -> None:
     Raises
     ------
     OSError
-        If the folder cannot be made or written; nothing is left behind.
+        If the folder cannot be made or written, or `path` is a device, a pipe or a
+        loop of links; nothing is left behind.
     """
-    path = path.resolve()
+    path = _ordinary(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     mode = _mode(path)
     # In the same folder, since a rename is atomic only within one file system.
@@ -40,6 +41,21 @@ def write_bytes(path: Path, data: bytes) -> None:
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
+
+
+def _ordinary(path: Path) -> Path:
+    """Follow links, and refuse what a rename would destroy: /dev/null has to stay a device."""
+    try:
+        target = path.resolve()
+    except RuntimeError:
+        target = path
+    if target.is_symlink():
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
+    if target.exists() and not target.is_file():
+        if target.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        raise OSError(errno.EINVAL, "It is a device or a pipe, and no ordinary file", str(path))
+    return target
 
 
 def _mode(path: Path) -> int:

@@ -20,6 +20,8 @@ from lietool import figure, paths
 
 TRACEBACK = "LIETOOL_TRACEBACK"
 _COMPLETE = "_LIETOOL_COMPLETE"
+# Where the name to import is not the one to install.
+_PACKAGES = {"PIL": "pillow"}
 _TRY = """\
 Three things to try:
   lietool slerp           draw a picture, ./slerp.png
@@ -124,6 +126,12 @@ class _Lietool(click.Group):
             return 141
         except click.ClickException as error:
             return _say(_message(error, path), error.exit_code)
+        except ModuleNotFoundError as error:
+            package = (error.name or "").partition(".")[0]
+            if package in ("", "lietool"):
+                raise
+            wanted = _PACKAGES.get(package, package)
+            return _say(f"{path}: {_one_line(error)}. Install it with: pip install {wanted}", 2)
         except OSError as error:
             return _say(
                 f"{path}: {error.strerror or error or type(error).__name__}"
@@ -212,6 +220,9 @@ def _report_bug(kind: type[BaseException], error: BaseException, trace: Tracebac
         return
     frames = traceback.extract_tb(trace)
     place = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
+    # Who knows better than the traceback has left a note.
+    if notes := getattr(error, "__notes__", None):
+        place = f" ({_one_line(notes[-1])})"
     call = shlex.join(["lietool", *sys.argv[1:]])
     click.echo(
         f"{call}: {_one_line(f'{kind.__name__}: {error}')}{place}. This is a bug in lietool or the figure; "

@@ -28,6 +28,7 @@ from lietool.declaration import figure as figure
 from lietool.parameter import Param as Param
 from lietool.parameter import Parameter as Parameter
 from lietool.parameter import nearest as nearest
+from lietool.parameter import quoted as quoted
 
 # Also set by `lietool --project`: spawned workers inherit it.
 PROJECT = "LIETOOL_PROJECT"

@@ -132,8 +132,7 @@ class Parameter:
                     value = text
             return self.check(value)
         except (ValueError, KeyError):
-            shown = text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
-            raise ValueError(f"must be {self.wanted}; got {shown!r}") from None
+            raise ValueError(f"must be {self.wanted}; got {quoted(text)}") from None
 
     def check(self, value: Any) -> Any:
         """Return the value in the parameter's own type.
@@ -250,6 +249,11 @@ def _refuse_contradictions(parameter: Parameter) -> None:
         raise ValueError("has choices but is no text. Leave them out")
     if param.low is not None and param.high is not None and param.low > param.high:
         raise ValueError(f"has an empty range, {param.low:g} to {param.high:g}. Exchange its ends")
+
+
+def quoted(text: str) -> str:
+    """Return a text as a message shows it: in quotes, and only the beginning of a long one."""
+    return repr(text if len(text) <= _LONGEST else f"{text[:_LONGEST]}...")
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

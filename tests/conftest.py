@@ -12,7 +12,7 @@ import pytest
 
 from lietool import figure, paths
 from lietool.declaration import Drawing
-from lietool.render import context, draw
+from lietool.render import compose, context, draw, labels, scene, theme
 from lietool.render.compose import PlacedLabel
 from lietool.verbs import _studio
 
@@ -112,6 +112,18 @@ def plate() -> Callable[[str], Built]:
     """Each of our plates by its id: drawn once, when it is first asked for."""
     commands = figure.plates((paths.FIGURES,))
     return cache(lambda plate_id: build(_studio.Item(plate_id, commands[plate_id])))
+
+
+@pytest.fixture(scope="session")
+def placed() -> Callable[..., tuple[PlacedLabel, ...]]:
+    """The labels of a picture where rendering puts them, with nothing drawn under them."""
+
+    def place(picture: scene.Picture, unit: float = 1.0) -> tuple[PlacedLabel, ...]:
+        width, height = (round(unit * side) for side in picture.size)
+        blank = np.zeros((height, width, 3), np.uint8)
+        return compose.compose(blank, picture, unit, (0.0, 0.0), labels.Store(), theme.BOOK)
+
+    return place
 
 
 @pytest.fixture

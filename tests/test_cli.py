@@ -428,6 +428,40 @@ def test_an_output_that_is_a_folder(folder: Path) -> None:
     assert "a.png is a folder" in _refused(_run("ball", "-o", "a.png"))
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs a file that is no ordinary one")
+def test_an_output_that_is_a_pipe(folder: Path) -> None:
+    os.mkfifo(folder / "a.png")
+    assert "--output a.png is a device or a pipe" in _refused(_run("ball", "-o", "a.png"))
+
+
+@pytest.mark.parametrize("text", ["9" * 5000 + "x1", "9" * 400 + "cm", "x" * 5000])
+def test_of_a_long_size_the_beginning_is_shown(folder: Path, text: str) -> None:
+    said = _refused(_run("ball", "--size", text))
+    assert f"got {text[:60] + '...'!r}" in said
+    assert len(said) < 300
+
+
+@pytest.mark.parametrize(("module", "package"), [("jinja2", "jinja2"), ("PIL.Image", "pillow")])
+def test_a_package_that_is_missing(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, module: str, package: str
+) -> None:
+    def missing(*_: object) -> None:
+        raise ModuleNotFoundError(f"No module named {module!r}", name=module)
+
+    monkeypatch.setattr(atomic, "write_bytes", missing)
+    said = _refused(_run("ball"))
+    assert said.endswith(f"No module named {module!r}. Install it with: pip install {package}")
+
+
+def test_a_module_of_our_own_that_is_missing_is_a_bug(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(*_: object) -> None:
+        raise ModuleNotFoundError("No module named 'lietool.gone'", name="lietool.gone")
+
+    monkeypatch.setattr(atomic, "write_bytes", missing)
+    with pytest.raises(ModuleNotFoundError):
+        _run("ball")
+
+
 def test_a_folder_that_is_not_writable(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "access", lambda *_: False)
     assert f"the folder {folder} is not writable" in _refused(_run("ball", "-o", "a.png"))
@@ -801,6 +835,22 @@ class TestWriting:
         assert link.is_symlink()
         assert target.read_bytes() == b"new"
         assert target.stat().st_mode & 0o777 == 0o640
+
+    @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs a file that is no ordinary one")
+    def test_a_pipe_or_a_device_stays_what_it_is(self, tmp_path: Path) -> None:
+        os.mkfifo(tmp_path / "pipe")
+        (tmp_path / "link.png").symlink_to("pipe")
+        for name in ("pipe", "link.png"):
+            with pytest.raises(OSError, match="device or a pipe"):
+                atomic.write_bytes(tmp_path / name, b"new")
+        assert (tmp_path / "pipe").is_fifo()
+        assert sorted(path.name for path in tmp_path.iterdir()) == ["link.png", "pipe"]
+
+    def test_links_that_go_round_are_an_error_of_the_disk(self, tmp_path: Path) -> None:
+        (tmp_path / "a.png").symlink_to("a.png")
+        with pytest.raises(OSError, match=os.strerror(errno.ELOOP)):
+            atomic.write_bytes(tmp_path / "a.png", b"new")
+        assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
 
     @pytest.mark.skipif(os.geteuid() == 0, reason="root may write what is read-only")
     def test_a_file_that_is_read_only_is_left_alone(self, tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ A plate is drawn once for all tests.  That the comparison would notice a mistake
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -66,7 +66,7 @@ class TestPlates:
     def test_labels_are_not_crossed(self, plate_id, plate):
         built = plate(plate_id)
         bare = without_labels(built.drawing.picture)
-        light = draw.render(bare).image @ (0.2126, 0.7152, 0.0722)
+        light = draw.render(bare, draft=True).image @ (0.2126, 0.7152, 0.0722)
         for label in built.labels:
             x0, y0, x1, y1 = label.box
             under = light[max(y0 - 3, 0) : y1 + 3, max(x0 - 3, 0) : x1 + 3]
@@ -128,14 +128,16 @@ def sampled(figure_: Figure) -> Iterator[dict[str, object]]:
             yield from (base | {parameter.name: choice} for choice in parameter.param.choices)
 
 
-def sketch(figure_: Figure, **params: object) -> str:
-    """Draw small; return what is wrong with the values, in one line, or nothing."""
+def sketch(figure_: Figure, placed: Callable[..., object], **params: object) -> str:
+    """Draw small, but type in its size; return what is wrong with the values, in one line, or nothing."""
     try:
         drawing = figure_.draw(**params)
     except ValueError as error:
         return str(error)
-    image = draw.render(drawing.picture, size=(64, 48), draft=True).image
+    image = draw.render(without_labels(drawing.picture), size=(64, 48), draft=True).image
     assert (image != 255).any()
+    # In another size every word would have to be set anew.
+    placed(drawing.picture)
     numbers.dumps(drawing.numbers)
     return ""
 
@@ -158,11 +160,11 @@ class TestFigures:
             turns = re.search(r"\b(angle|turn(ed)?|rotation)\b", param.help) and parameter.kind == "float"
             assert not turns or param.unit == "deg", parameter.name
 
-    def test_the_ends_of_every_range(self, name):
+    def test_the_ends_of_every_range(self, name, placed):
         loaded = figure.load(name, (paths.FIGURES,))
         complaints = {}
         for params in sampled(loaded):
-            if complaint := sketch(loaded, **params):
+            if complaint := sketch(loaded, placed, **params):
                 complaints[json.dumps(params)] = complaint
         for complaint in complaints.values():
             assert "\n" not in complaint and "; got " in complaint, complaint

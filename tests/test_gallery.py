@@ -294,6 +294,12 @@ class TestPage:
         code = (tmp_path / "mine/out/gallery" / link).resolve().read_text().splitlines()
         assert code[int(line) - 1].startswith("@figure(")
 
+    def test_no_folder_of_this_machine_is_named(self, run, tmp_path, monkeypatch):
+        monkeypatch.setenv(figure.PROJECT, str(tmp_path / "mine"))
+        run()
+        text = (tmp_path / "out/gallery/index.html").read_text()
+        assert str(tmp_path) not in text and "--project mine dots" in re.sub(r"<[^>]+>", "", text)
+
     def test_some_plates_only(self, run, tmp_path):
         run("t1B", "-o", "one")
         assert "1 plate," in (tmp_path / "one/index.html").read_text()
@@ -414,6 +420,20 @@ class TestFolder:
             assert not site.stranger(folder)
             named = (folder / site.PAGE).read_text().split()
             assert (named == list(old)) == (writes < 5) and all((folder / name).is_file() for name in named)
+
+    def test_a_folder_named_like_a_file_of_ours_is_somebody_elses(self, tmp_path):
+        (tmp_path / site.MARK).touch()
+        (tmp_path / ".notes.part").mkdir()
+        assert ".notes.part" in site.stranger(tmp_path)
+
+    def test_what_came_while_it_was_drawn_stays(self, tmp_path):
+        old = {site.named("pictures", "T1", b"old", "png"): b"old"}
+        site.publish(tmp_path, b"", old)
+        for name in ("notes.txt", "pictures/mine.png", "numbers/deep/T1.0123456789.json"):
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_text("mine")
+        assert site.publish(tmp_path, b"", {}) == [tmp_path / name for name in old]
+        assert sum(data == b"mine" for data in files(tmp_path).values()) == 3
 
     def test_assets_are_named_by_their_content(self):
         one, two = (site.named("pictures", "T1", data, "png") for data in (b"one", b"two"))

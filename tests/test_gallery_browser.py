@@ -258,9 +258,8 @@ class TestWidths:
 
 
 class TestSearch:
-    @pytest.mark.parametrize(
-        ("text", "first", "others"),
-        [
+    def test_it_finds(self, home):
+        for text, first, others in (
             ("B4.2", "B4.2", {"B4.2b"}),
             ("b4.2B", "B4.2b", set()),
             ("4.2", "B4.2", {"B4.2b"}),
@@ -273,13 +272,12 @@ class TestSearch:
             ("gimbal", "GL1", {"GL2"}),
             ("SLERP exponential", "B2.8", None),
             ("four stages", "B4.2", None),
-        ],
-    )
-    def test_it_finds(self, home, text, first, others):
-        home.type(text)
-        assert home.seen[0] == first and (others is None or set(home.seen[1:]) == others)
-        count = len(home.seen)
-        assert home.js("return $('#_count').textContent") == ("1 plate" if count == 1 else f"{count} plates")
+        ):
+            home.type(text)
+            seen = home.seen
+            assert seen[0] == first and (others is None or set(seen[1:]) == others), text
+            count = "1 plate" if len(seen) == 1 else f"{len(seen)} plates"
+            assert home.js("return $('#_count').textContent") == count, text
 
     def test_an_equation_finds_every_plate_that_shows_it_and_no_other(self, home):
         cited = home.js(

@@ -1,8 +1,11 @@
 """Plates in several processes: the same verdicts and the same bytes as in one, and a death is one line."""
 
 import json
+import os
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -14,6 +17,8 @@ FILE = '''
 """Toy."""
 
 import os
+import pathlib
+import time
 from typing import Annotated
 
 from lietool.figure import Drawing, Param, Plate, figure
@@ -34,6 +39,11 @@ def strokes(
     """Draw strokes."""
     if die or os.environ.get("STROKES_DIE"):
         os._exit(9)
+    if what := os.environ.get("STROKES_FAIL"):
+        raise {"refuse": ValueError("no\\nstrokes"), "break": KeyError("x")}[what]
+    if beside := os.environ.get("STROKES_WAIT"):
+        pathlib.Path(beside, f"{os.getpid()}.pid").touch()
+        time.sleep(600)
     rows = [Lines([(5.0, 4.0 + 4.0 * k, 0.0), (55.0, 5.0 + 4.0 * k, 0.0)], "#2b2f36") for k in range(count)]
     return Drawing(Picture((View(tuple(rows)),), (60, 40)), {"count": count})
 '''
@@ -47,8 +57,6 @@ def project(tmp_path):
 
 
 def call(project: Path, line: str, **environment: str) -> subprocess.CompletedProcess:
-    import os
-
     words = [sys.executable, "-m", "lietool", "--project", str(project), "figures", *line.split()]
     return subprocess.run(
         words, cwd=project, capture_output=True, text=True, timeout=120, env=os.environ | environment
@@ -86,6 +94,47 @@ def test_an_error_of_a_plate_keeps_its_code(project):
     (project / "out").write_text("a file where the folder should be")
     done = call(project, "build strokes --jobs 2")
     assert done.returncode == 2 and done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_an_error_names_the_plate_and_the_line(project, jobs):
+    context.get()
+    refused = call(project, f"build strokes --jobs {jobs}", STROKES_FAIL="refuse")
+    assert (refused.returncode, refused.stderr) == (2, "lietool figures: T1: no strokes\n")
+    broken = call(project, f"build strokes --jobs {jobs}", STROKES_FAIL="break")
+    assert broken.returncode == 1 and broken.stderr.count("\n") == 1
+    assert "KeyError: 'x' (plate T1, strokes.py, line " in broken.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs signals")
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+def test_no_process_outlives_the_one_that_started_it(project, how):
+    context.get()
+    words = [sys.executable, "-m", "lietool", "--project", str(project), "figures", "build", "strokes", "-j2"]
+    environment = os.environ | {"STROKES_WAIT": str(project)}
+    with subprocess.Popen(words, cwd=project, env=environment, stderr=subprocess.DEVNULL) as parent:
+        _until(lambda: len(list(project.glob("*.pid"))) == 2)
+        parent.send_signal(how)
+        assert parent.wait(30) == (130 if how == signal.SIGINT else -how)
+    workers = [int(path.stem) for path in project.glob("*.pid")]
+    _until(lambda: not any(map(_lives, workers)))
+    assert not list(project.glob("out/*"))
+
+
+def _until(done) -> None:
+    for _ in range(600):
+        if done():
+            return
+        time.sleep(0.1)
+    raise AssertionError("waited in vain")
+
+
+def _lives(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
 
 
 @pytest.mark.parametrize("jobs", ["0", "-1", "two", "1000"])

@@ -8,7 +8,7 @@ from lietool.render import letter as shape
 from lietool.render import plane, scene, style
 from lietool.render.camera import Camera
 from lietool.render.marks import LETTER, LETTER_BEFORE, beyond, coordinate_axes, curved_arrow, letter
-from lietool.render.solids import frame_along
+from lietool.render.solids import fan_faces, frame_along
 
 from . import _motions as m
 
@@ -130,10 +130,9 @@ def _angle(axis: np.ndarray, center: np.ndarray, theta: float, color: str) -> li
     ring = plane.spiral((0.0, 0.0), _RING, start, theta)
     whole = plane.arc((0.0, 0.0), _RING, 0.0, 2.0 * np.pi)
     fan = center + np.concatenate([[(0.0, 0.0)], ring]) @ frame[:, :2].T
-    n = np.arange(1, len(ring))
     return [
         scene.Lines(center + whole @ frame[:, :2].T, color, style.HAIR, 0.5),
-        scene.Surface(fan, np.stack([0 * n, n, n + 1], axis=-1), color, material="flat", alpha=0.30),
+        scene.Surface(fan, fan_faces(len(fan)), color, material="flat", alpha=0.30),
         *curved_arrow(fan[1:], color, 0.017, 2.9),
     ]
 
@@ -170,11 +169,10 @@ def _corner_turned(one: np.ndarray, axis: np.ndarray, delta: float, camera: Came
     rim = center + np.outer(np.cos(angles), start) + np.outer(np.sin(angles), across)
     whole = np.linspace(0.0, 2.0 * np.pi, 121)
     ring = center + np.outer(np.cos(whole), start) + np.outer(np.sin(whole), across)
-    n = np.arange(1, len(rim))
     fan = np.concatenate([[center], rim])
     return [
         scene.Lines(ring, style.MARK, style.HAIR, 0.6),
-        scene.Surface(fan, np.stack([0 * n, n, n + 1], axis=-1), style.MARK, material="flat", alpha=0.30),
+        scene.Surface(fan, fan_faces(len(fan)), style.MARK, material="flat", alpha=0.30),
         scene.Lines(np.stack([rim[0], center, rim[-1]]), style.MARK, style.EDGE, lift=0.02),
         *curved_arrow(rim, style.MARK, 0.014, 2.9),
         scene.Points(rim[[0, -1]], style.MARK, 5.0),

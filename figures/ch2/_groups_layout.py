@@ -11,9 +11,9 @@ from itertools import pairwise
 import numpy as np
 
 _STARTS, _SWEEPS = 12, 8
-# How much an arrow likes to be straight, by how many of its ends are only places on its way.
 # How strongly everything is drawn to the middle.
 _TOGETHER = 0.1
+# How much an arrow likes to be straight, by how many of its ends are only places on its way.
 _STRAIGHT = (1.0, 2.0, 8.0)
 
 
@@ -64,7 +64,7 @@ def arrange(n: int, arrows: Sequence[tuple[int, int]], apart: float, aside: floa
     level = levels(n, arrows)
     links, chains, at = _with_places(level, arrows)
     rows = [[i for i in range(len(at)) if at[i] == k] for k in range(int(at.max(initial=0)) + 1)]
-    rows = _ordered(rows, links, n)
+    rows = _ordered(rows, links)
     x = _straightened(rows, links, n, (apart, aside), width)
     ways = tuple(np.stack([x[chain], at[chain]], axis=-1) for chain in chains)
     return Layout(level, x[:n], ways, _crossings(rows, links))
@@ -98,7 +98,7 @@ def _crossings(rows: list[list[int]], links: Sequence[tuple[int, int]]) -> int:
     return count
 
 
-def _ordered(rows: list[list[int]], links: Sequence[tuple[int, int]], n: int) -> list[list[int]]:
+def _ordered(rows: list[list[int]], links: Sequence[tuple[int, int]]) -> list[list[int]]:
     """The order with the fewest crossings, and among those the one with the shortest arrows."""
     rng = np.random.default_rng(0)
     best, least = rows, (np.inf, np.inf)

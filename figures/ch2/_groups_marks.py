@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from lietool.lie import groups
 from lietool.lie.group_maps import Node
-from lietool.render import labels, scene, style
+from lietool.render import labels, scene, solids, style
 
 PAGE = (1200.0, 900.0)
 MARGIN = 26.0
@@ -82,13 +82,14 @@ class Card:
         (x, y), (w, h), more = self.center, self.size, SHEET * (self.sheets - 1)
         return x - w / 2, y - h / 2 - more, x + w / 2 + more, y + h / 2
 
-    def records(self, alpha: float = 1.0) -> list[scene.Record]:
+    def records(self) -> list[scene.Record]:
         """Return the card: tinted and framed twice if compact, one sheet for each component."""
         records: list[scene.Record] = []
         for k in reversed(range(self.sheets)):
             center, z = np.asarray(self.center) + _NEXT * k, 4.0 - 0.1 * k
             outline = _rounded(center, self.size, z)
-            faces = [[0, i, i + 1] for i in range(1, len(outline) - 2)]
+            # Its last point is its first.
+            faces = solids.fan_faces(len(outline) - 1)
             fill = style.BAND if self.compact else style.PAPER
             records.append(scene.Surface(outline, faces, fill, material="flat"))
             records.append(scene.Lines(outline, style.MUTED, style.EDGE, dash=None if self.group else _DASH))

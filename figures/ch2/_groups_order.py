@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from lietool.figure import Drawing, nearest
+from lietool.figure import Drawing, nearest, quoted
 from lietool.lie import groups
 from lietool.lie.group_maps import Node
 from lietool.render import scene, style
@@ -39,17 +39,19 @@ def read(text: str, n: int) -> list[Node]:
         name, _, rest = word.partition("(")
         if name not in groups.GROUPS:
             hint = nearest(name, groups.GROUPS) or f" Known: {', '.join(groups.GROUPS)}."
-            raise ValueError(f"nodes must be names of groups; got {name!r}.{hint}")
+            raise ValueError(f"nodes must be names of groups; got {quoted(name)}.{hint}")
         only = groups.GROUPS[name].only
         if rest and (rest not in ("2)", "3)") or only not in (None, int(rest[0]))):
             wanted = name if only else f"{name}(2) or {name}(3)"
-            raise ValueError(f"nodes must have a dimension that they exist in; got {word!r}. Write {wanted}")
+            raise ValueError(
+                f"nodes must have a dimension that they exist in; got {quoted(word)}. Write {wanted}"
+            )
         node = (name, int(rest[0]) if rest else only or n)
         if node in nodes:
             raise ValueError(f"nodes must be different; got {word!r} twice. Leave one out")
         nodes.append(node)
     if not nodes:
-        raise ValueError(f"nodes must name a group; got {text!r}. Write for example SO,O,GL")
+        raise ValueError(f"nodes must name a group; got {quoted(text)}. Write for example SO,O,GL")
     return nodes
 
 

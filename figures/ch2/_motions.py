@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lietool.lie import se2
-from lietool.render import plane, scene, style
+from lietool.render import plane, polyline, scene, solids, style
 from lietool.render.plot import number
 
 from . import _letters
@@ -130,13 +130,7 @@ def given(
 
 def _short(curve: np.ndarray, by: float) -> np.ndarray:
     """A curve on the page (n, 3) that ends a little earlier, if it is long enough."""
-    steps = np.linalg.norm(np.diff(curve, axis=0), axis=-1)
-    left = np.concatenate([np.cumsum(steps[::-1])[::-1], [0.0]])
-    if left[0] < 4.0 * by:
-        return curve
-    cut = int(np.flatnonzero(left >= by)[-1])
-    end = curve[cut] + (left[cut] - by) / steps[cut] * (curve[cut + 1] - curve[cut])
-    return np.concatenate([curve[: cut + 1], end[None]])
+    return polyline.shortened(curve, by) if polyline.remaining(curve)[0] >= 4.0 * by else curve
 
 
 def spoke(page: plane.Plane, center: ArrayLike, point: ArrayLike) -> scene.Lines:
@@ -153,17 +147,15 @@ def fan(
     angles = np.unwrap(np.arctan2(around[:, 1], around[:, 0]))
     once = np.abs(angles - angles[0]) <= 2.0 * np.pi + 1e-9
     rim = curve[: len(curve) if once.all() else int(np.argmin(once))]
-    k = np.arange(1, len(rim))
     corners = page.at(np.concatenate([[np.asarray(center, float)], rim]))
-    faces = np.stack([0 * k, k, k + 1], axis=-1)
-    return [scene.Surface(corners, faces, color, material="flat", alpha=alpha)] if len(k) else []
+    faces = solids.fan_faces(len(corners))
+    return [scene.Surface(corners, faces, color, material="flat", alpha=alpha)] if len(faces) else []
 
 
 def area(page: plane.Plane, corners: ArrayLike, color: str, alpha: float) -> scene.Surface:
     """Return a convex area of the plane, tinted."""
     at = page.at(corners)
-    k = np.arange(1, len(at) - 1)
-    return scene.Surface(at, np.stack([0 * k, k, k + 1], axis=-1), color, material="flat", alpha=alpha)
+    return scene.Surface(at, solids.fan_faces(len(at)), color, material="flat", alpha=alpha)
 
 
 def named(

@@ -10,6 +10,7 @@ from lietool.render import scene, style
 from lietool.render.camera import Camera, around
 from lietool.render.globe import globe, joined, parallels
 from lietool.render.plot import number
+from lietool.render.solids import fan_faces
 
 # Nearer than this to another, in radians of arc, a point goes without a name of its own.
 _CLOSE = 0.2
@@ -112,12 +113,10 @@ def _plane(s: Shown) -> list[scene.Record]:
 def _sector(s: Shown) -> list[scene.Record]:
     """The angle theta at the centre, and the part t theta of it."""
     fan = np.concatenate([[[0.0, 0.0, 0.0]], s.curve])
-    n = np.arange(1, len(s.curve))
-    faces = np.stack([0 * n, n, n + 1], axis=-1)
     spokes = joined(np.stack([np.zeros(3), end]) for end in (s.curve[0], s.curve[-1]))
     part = s.curve[: max(round(s.t * (len(s.curve) - 1)) + 1, 2)]
     return [
-        scene.Surface(fan, faces, style.GROUP, material="flat", alpha=0.10),
+        scene.Surface(fan, fan_faces(len(fan)), style.GROUP, material="flat", alpha=0.10),
         scene.Lines(spokes, style.GROUP_TEXT, style.THIN),
         scene.Lines(np.stack([np.zeros(3), s.marked]), style.GROUP_TEXT, style.EDGE),
         scene.Lines(_PART * part, style.GROUP_TEXT, style.EDGE),

@@ -194,9 +194,9 @@ def _disc(s: _Shown) -> list[scene.Record]:
     records: list[scene.Record] = []
     for edge, alpha in ((rim, 0.04), (part, 0.12)):
         fan = np.concatenate([s.center[None], edge])
-        n = np.arange(1, len(edge))
-        faces = np.stack([0 * n, n, n + 1], axis=-1)
-        records.append(scene.Surface(fan, faces, style.ARC, material="flat", alpha=alpha))
+        records.append(
+            scene.Surface(fan, solids.fan_faces(len(fan)), style.ARC, material="flat", alpha=alpha)
+        )
     return [*records, scene.Lines(rim, style.ARC, style.EDGE, 0.9)]
 
 

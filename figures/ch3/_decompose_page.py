@@ -8,6 +8,7 @@ import numpy as np
 from lietool.lie import so2
 from lietool.render import brackets, scene, style
 from lietool.render.plane import Plane, arc, moved, path
+from lietool.render.solids import fan_faces
 
 from . import _decompose_layout as layouts
 from . import _decompose_numbers as factors
@@ -110,13 +111,10 @@ def _panel(
     """The disc, the glyph and the axes, carried as far as the stage says; `before` lies under the glyph."""
     fill, edge = colors
     disc = moved(stage.matrix, _circle())
-    n = np.arange(1, len(disc))
-    faces = np.stack([0 * n, n, n + 1], axis=-1)
+    fan = place.at(np.concatenate([[[0.0, 0.0]], disc]))
     cross = np.array([[-1.0, 0.0], [1.0, 0.0], [np.nan, np.nan], [0.0, -1.0], [0.0, 1.0]])
     records: list[scene.Record] = [
-        scene.Surface(
-            place.at(np.concatenate([[[0.0, 0.0]], disc])), faces, fill, material="flat", alpha=0.35
-        ),
+        scene.Surface(fan, fan_faces(len(fan)), fill, material="flat", alpha=0.35),
         place.line(reach * cross, style.RULE, style.HAIR),
         *before,
         *place.glyph(stage.matrix, fill, edge, size=1.1, width=style.THIN),

@@ -86,7 +86,7 @@ def _lift_view(lift: np.ndarray, corner: int, camera: Camera) -> list[scene.Reco
     if not len(breaks):
         records += _shadow(lift, corner)
         if corner < len(lift):
-            records += _turn(lift[corner], camera)
+            records += _turn(lift[corner])
     for jump in breaks:
         records += _jump(lift[jump - 1], lift[jump], camera)
     records.append(scene.Points(lift[[0]], color, 8.0))
@@ -94,7 +94,7 @@ def _lift_view(lift: np.ndarray, corner: int, camera: Camera) -> list[scene.Reco
     return records
 
 
-def _turn(point: np.ndarray, camera: Camera) -> list[scene.Record]:
+def _turn(point: np.ndarray) -> list[scene.Record]:
     """Where the second turn begins."""
     return [
         scene.Points([point], style.ALGEBRA, 7.0),

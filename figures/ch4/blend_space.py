@@ -99,7 +99,7 @@ def _definite(name: str, entries: Symmetric) -> np.ndarray:
     S = np.array([[xx, xy], [xy, yy]])
     smallest = float(np.linalg.eigvalsh(S)[0])
     # With less, relative to the larger, the logarithm is rounding.
-    if smallest <= 1e-12 * float(np.abs(S).max()) or not S.any():
+    if smallest <= 1e-12 * float(np.abs(S).max()):
         raise ValueError(
             f"{name} must be positive definite; got smallest eigenvalue {smallest:.3g}. "
             "Give xx, xy, yy with xx > 0 and xx yy > xy^2"

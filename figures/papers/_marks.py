@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from lietool.render import scene, style
+from lietool.render.solids import fan_faces
 
 RADIUS = 8.0
 
@@ -46,7 +47,7 @@ def polygon(corners: int, color: str, turned: float = 0.0, radius: float = RADIU
     angle = np.pi / 2.0 + turned + 2.0 * np.pi * np.arange(corners) / corners
     reach = radius * np.sqrt(2.0 * np.pi / (corners * np.sin(2.0 * np.pi / corners)))
     rim = reach * np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=-1)
-    faces = [[0, k, k + 1] for k in range(1, corners - 1)]
+    faces = fan_faces(corners)
     return lambda x, y: [scene.Surface(rim + np.array([x, y, 0.0]), faces, color, material="flat")]
 
 

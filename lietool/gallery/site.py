@@ -50,7 +50,9 @@ def stranger(folder: Path) -> str:
     for path in inside:
         parts = sorted(path.iterdir()) if path.name in _FOLDERS and path.is_dir() else [path]
         for part in parts:
-            if not _is_ours(part.relative_to(folder)):
+            # What is removed later are files: a folder with the name of one holds somebody else's.
+            folded = part.is_dir() and part.relative_to(folder).as_posix() not in _FOLDERS
+            if folded or not _is_ours(part.relative_to(folder)):
                 return f"it holds {part.relative_to(folder)}, which no gallery has"
     return ""
 
@@ -58,7 +60,8 @@ def stranger(folder: Path) -> str:
 def publish(folder: Path, page: bytes, assets: Mapping[str, bytes]) -> list[Path]:
     """Write a page with its assets, and remove what an older one left.
 
-    The caller has seen that the folder is no stranger's, and lets nobody else write to it.
+    The caller has seen that the folder is no stranger's, and lets no other gallery write to it.  But
+    drawing takes minutes: what somebody has put there meanwhile stays.
 
     Parameters
     ----------
@@ -87,7 +90,11 @@ def publish(folder: Path, page: bytes, assets: Mapping[str, bytes]) -> list[Path
             atomic.write_bytes(path, data)
     atomic.write_bytes(folder / PAGE, page)
     kept = {PAGE, MARK, *assets}
-    old = [path for path in sorted(folder.rglob("*")) if path.is_file() and _name(path, folder) not in kept]
+    old = [
+        path
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and _is_ours(path.relative_to(folder)) and _name(path, folder) not in kept
+    ]
     for path in old:
         path.unlink(missing_ok=True)
     return old
@@ -104,4 +111,4 @@ def _is_ours(path: Path) -> bool:
     if len(name.parts) == 1:
         # A folder that holds nothing yet.
         return name.name in (PAGE, MARK, *_FOLDERS)
-    return name.parts[0] in _FOLDERS and _ASSET.fullmatch(name.name) is not None
+    return len(name.parts) == 2 and name.parts[0] in _FOLDERS and _ASSET.fullmatch(name.name) is not None

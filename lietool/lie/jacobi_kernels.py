@@ -20,6 +20,7 @@ _EPS = float(np.finfo(np.float64).eps)
 _TINY = 1e-300  # keeps 0/0 at 0 and changes nothing else
 _SMALL = 1e-8  # rotations by less leave only their square behind
 _SWEEPS = 12
+_LEAST = -1022  # the exponent of the smallest number with all its bits
 
 
 def _turn(alpha: Array, beta: Array, gamma: Array) -> Array:
@@ -177,6 +178,7 @@ def scaled(A: Rows) -> tuple[Rows, NDArray[np.intc]]:
     for entry in A[1:]:
         np.maximum(largest, np.abs(entry), out=largest)
     _, k = np.frexp(largest)
+    k = np.maximum(k, _LEAST)  # the reciprocal of a smaller one overflows, and 2^-52 squared does not vanish
     f = np.ldexp(1.0, -k)
     return [f * entry for entry in A], k
 

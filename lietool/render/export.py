@@ -40,7 +40,7 @@ def png(image: np.ndarray, text: Mapping[str, str], dpi: float | None = None) ->
     """
     from PIL import Image
 
-    check("png", [image])
+    check("export.png", [image])
     density = {"dpi": (dpi, dpi)} if dpi else {}
     file = io.BytesIO()
     Image.fromarray(image).save(file, "PNG", pnginfo=_said(text), compress_level=_COMPRESSION, **density)
@@ -70,7 +70,7 @@ def apng(frames: Sequence[np.ndarray], seconds: float, text: Mapping[str, str]) 
     """
     from PIL import Image
 
-    check("apng", frames)
+    check("export.apng", frames)
     pictures = [Image.fromarray(frame) for frame in frames]
     # In whole milliseconds, of which none is lost over the round.
     ends = np.rint(np.linspace(0.0, 1000.0 * seconds, len(frames) + 1)).astype(int)
@@ -119,7 +119,7 @@ def gif(frames: Sequence[np.ndarray], seconds: float) -> bytes:
     ValueError
         If there is no frame, or the frames are not of one shape.
     """
-    check("gif", frames)
+    check("export.gif", frames)
     palette, index = _palette(frames)
     pictures = [_indexed(frame, palette, index) for frame in frames]
     # Browsers take anything below two hundredths for ten.
@@ -191,15 +191,13 @@ def _colors(codes: np.ndarray) -> np.ndarray:
 
 
 def check(function: str, frames: Sequence[np.ndarray]) -> None:
-    """Refuse what are no frames of one film: ValueError in the name of a function of this module."""
+    """Refuse what are no frames of one film: ValueError in the name of a function."""
     if not frames:
-        raise ValueError(f"export.{function}: frames must not be empty. Give at least one.")
+        raise ValueError(f"{function}: frames must not be empty. Give at least one.")
     for image in frames:
         if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] != 3 or 0 in image.shape:
-            raise ValueError(
-                f"export.{function}: image must be uint8 (h, w, 3); got {image.dtype} {image.shape}."
-            )
+            raise ValueError(f"{function}: image must be uint8 (h, w, 3); got {image.dtype} {image.shape}.")
         if image.shape != frames[0].shape:
             raise ValueError(
-                f"export.{function}: frames must be of one shape; got {image.shape} and {frames[0].shape}."
+                f"{function}: frames must be of one shape; got {image.shape} and {frames[0].shape}."
             )

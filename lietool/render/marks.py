@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lietool.render import letter as letter_
-from lietool.render import style
+from lietool.render import polyline, style
 from lietool.render.camera import Camera
 from lietool.render.globe import joined
 from lietool.render.scene import Arrow, Label, Lines, Record, Surface, Tube
@@ -101,18 +101,16 @@ def letter(
 def curved_arrow(points: ArrayLike, color: str, radius: float, head: float = 2.6) -> list[Record]:
     """Return a round tube along a polyline (n, 3) with an arrow's head; nothing where it has no length."""
     points = np.asarray(points, float)
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
-    left = np.concatenate([np.cumsum(steps[::-1])[::-1], [0.0]])
-    reach = 3.0 * head * radius
-    if left[0] < 1e-9:
+    length, reach = polyline.remaining(points)[0], 3.0 * head * radius
+    if length < 1e-9:
         return []
-    if left[0] <= reach:
+    if length <= reach:
         return [Arrow(points[0], points[-1], color, radius, head)]
-    cut = int(np.flatnonzero(left >= reach)[-1])
-    start = points[cut] + (left[cut] - reach) / steps[cut] * (points[cut + 1] - points[cut])
+    shaft = polyline.shortened(points, reach)
+    start = shaft[-1]
     # Half of an arrow is its head: this one begins as far before its place as it is long.
     back = start - (points[-1] - start)
     return [
-        Tube(np.concatenate([points[: cut + 1], start[None]]), color, radius),
+        Tube(shaft, color, radius),
         Arrow(start - 1e-3 * (start - back), points[-1], color, radius, head),
     ]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lietool.render import letter, style
+from lietool.render import letter, polyline, style
 from lietool.render.camera import Box
 from lietool.render.scene import Arrow, Label, Lines, Points, Record, Surface
 
@@ -219,20 +219,16 @@ def path(
     dash: tuple[float, float] | None = None,
 ) -> list[Record]:
     """Return a curve on the page (n, 3) that ends in an arrow's head; too short a one is left out."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
-    left = np.concatenate([np.cumsum(steps[::-1])[::-1], [0.0]])
-    reach = 6.0 * width
-    if left[0] < 1e-6:
+    length, reach = polyline.remaining(points)[0], 6.0 * width
+    if length < 1e-6:
         return []
-    if not head or left[0] < reach:
+    if not head or length < reach:
         return [Lines(points, color, width, dash=dash)]
     # The head stands on the last piece of the curve, as long as itself, along its chord.
-    cut = int(np.flatnonzero(left >= reach)[-1])
-    part = (left[cut] - reach) / steps[cut]
-    start = points[cut] + part * (points[cut + 1] - points[cut])
+    shaft = polyline.shortened(points, reach)
     return [
-        Lines(np.concatenate([points[: cut + 1], start[None]]), color, width, dash=dash),
-        *_head(start, points[-1], color, 0.76 * reach),
+        Lines(shaft, color, width, dash=dash),
+        *_head(shaft[-1], points[-1], color, 0.76 * reach),
     ]
 
 

@@ -28,6 +28,12 @@ def grid_faces(rows: int, columns: int) -> np.ndarray:
     return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
+def fan_faces(count: int) -> np.ndarray:
+    """Return the triangles of a fan of vertices about the first of them; shape (count - 2, 3)."""
+    k = np.arange(1, count - 1)
+    return np.stack([0 * k, k, k + 1], axis=-1)
+
+
 def grid(points: np.ndarray) -> Triangles:
     """Return the surface through a grid of points.
 

@@ -66,10 +66,10 @@ def mp4(
     ValueError
         If there is no frame, or the frames are of different or odd sizes.
     """
-    check("mp4", frames)
+    check("video.mp4", frames)
     height, width = frames[0].shape[:2]
     if height % 2 or width % 2:
-        raise ValueError(f"export.mp4: frames must have an even width and height; got {width} x {height}.")
+        raise ValueError(f"video.mp4: frames must have an even width and height; got {width} x {height}.")
     require()
     import av
 

@@ -7,7 +7,7 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
-from lietool.figure import Figure, Parameter, nearest, plates
+from lietool.figure import Figure, Parameter, nearest, plates, quoted
 from lietool.verbs import _film, _picture, _size
 
 # Repeated here so that completion need not load OpenGL; a test compares them with `render`.
@@ -161,7 +161,7 @@ def _up_to(most: float, unit: str, example: float) -> Callable[[str], float]:
             value = math.nan
         if not 0.0 < value <= most:
             raise ValueError(
-                f"must be a number of {unit}, more than 0 and up to {most:g}; got {text!r}. "
+                f"must be a number of {unit}, more than 0 and up to {most:g}; got {quoted(text)}. "
                 f"Write for example {example:g}"
             )
         return value

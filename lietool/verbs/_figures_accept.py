@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import click
 
 from lietool.golden import compare, compare_numbers, folder, numbers, store, verdict
-from lietool.verbs import _studio, _table
+from lietool.verbs import _figures_gallery, _studio, _table
 
 
 def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> None:
@@ -30,8 +30,6 @@ def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> N
         raise _studio.Stop(4, studio.trouble)
     everything = [item.place for item in _studio.items()]
     roots = list(dict.fromkeys(item.place.root for item in items))
-    from lietool.verbs import _figures_gallery
-
     with contextlib.ExitStack() as locks:
         # Labels are shared: from looking for them to the last picture nobody else may write or sweep.
         for root in sorted(roots):

@@ -1,17 +1,16 @@
 """`lietool figures gallery`: a page of all plates, and the README of their goldens."""
 
-import os
+import functools
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 import numpy as np
 
-from lietool import atomic, figure, paths
+from lietool import atomic, paths
 from lietool.gallery import chapters, entry, readme, site
 from lietool.golden import folder as golden_folder
 from lietool.golden import numbers as numbers_
@@ -61,7 +60,7 @@ def run(
         raise _studio.Stop(2, f"{folder} cannot take a gallery: {strange}. Name another folder with -o")
     if not golden and jobs < 2:
         _require(studio)
-    work = partial(_entry, order=Order(golden), studio=studio if jobs < 2 else None)
+    work = functools.partial(_entry, order=Order(golden), studio=studio if jobs < 2 else None)
     entries = _ordered(_jobs.each(work, items, jobs, "drawing"))
     text, assets = page.build(entries, folder)
     with _studio.writing(str(folder)), golden_folder.lock(folder):
@@ -191,14 +190,17 @@ def _equation(number: str) -> entry.Equation:
     return entry.Equation(number, listed.says, listed.formula, equations.tex()[number])
 
 
+@functools.cache
 def _listed() -> dict[str, _equations_index.Equation]:
     return {equation.number: equation for equation in _equations_index.catalogue(equations.LIST)}
 
 
 def _commands(item: _studio.Item) -> Iterator[entry.Command]:
     declared, words = item.declared, ["lietool"]
-    if _chapter(item)[0].key.startswith("_own"):
-        words += ["--project", os.environ.get(figure.PROJECT, "")]
+    chapter, root = _chapter(item)
+    if chapter.key.startswith("_own"):
+        # By its name alone: the whole path would tell readers of the folders of this machine.
+        words += ["--project", root.name]
     words.append(item.command)
     if item.id != next(iter(declared.plates)):
         words += ["--plate", item.id]

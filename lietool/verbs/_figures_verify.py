@@ -80,7 +80,9 @@ def _judged(item: _studio.Item, studio: _studio.Studio | None, failed: Path) -> 
         return _verify(item, studio or _studio.Studio(), failed)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         # Its own parameters were drawn once; the other plates still have to be judged.
-        found = verdict.Finding("undrawn", f"cannot be drawn any more: {error}")
+        kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
+        said = " ".join(str(error).split())
+        found = verdict.Finding("undrawn", f"cannot be drawn any more: {kind}{said}")
         return Result(item, verdict.Verdict((found,)))
 
 

@@ -159,6 +159,8 @@ def _target(output: str) -> Path:
         raise click.UsageError(
             f"--output {output or repr('')} is a folder. Write a file name, ending in {listed(ENDINGS)}"
         )
+    if path.exists() and not path.is_file():
+        raise click.UsageError(f"--output {output} is a device or a pipe. Write the name of a file")
     if path.suffix.lower() not in ENDINGS:
         raise click.UsageError(f"--output must end in {listed(ENDINGS)}; got {output!r}")
     if not path.parent.is_dir():

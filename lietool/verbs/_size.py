@@ -4,6 +4,8 @@ import math
 import re
 from dataclasses import dataclass
 
+from lietool.figure import quoted
+
 # Repeated from `render.draw` so that completion need not load OpenGL; a test compares them.
 LARGEST = 20000
 DPI = 300.0
@@ -71,18 +73,21 @@ def parse(text: str) -> Size:
         If the text is none, or it is too small or large: ``"must be ...; got ..."``.
     """
     if match := re.fullmatch(r"([0-9]+)[xX]([0-9]+)", text):
-        width, height = int(match[1]), int(match[2])
+        # A float takes any number of digits; an int refuses more than some thousands, in words of its own.
+        width, height = float(match[1]), float(match[2])
         if 1 <= width <= LARGEST and 1 <= height <= LARGEST:
             return Size(width, height, False, text)
-        raise ValueError(f"must be 1 to {LARGEST} pixels each way; got {text!r}. Write for example 1200x900")
+        raise ValueError(
+            f"must be 1 to {LARGEST} pixels each way; got {quoted(text)}. Write for example 1200x900"
+        )
     match = re.fullmatch(f"{_LENGTH}(?:[xX]{_LENGTH})?", text, re.IGNORECASE)
     if not match:
-        raise ValueError(f"must be {_WANTED}; got {text!r}")
+        raise ValueError(f"must be {_WANTED}; got {quoted(text)}")
     pairs = (match.group(1, 2), match.group(3, 4))
     sides = [float(number) * _INCHES[unit.lower()] for number, unit in pairs if unit]
     if not all(0.0 < side <= _LONGEST for side in sides):
         raise ValueError(
-            f"must be more than 0 and up to {_LONGEST:g}in; got {text!r}. Write for example 8.5cm"
+            f"must be more than 0 and up to {_LONGEST:g}in; got {quoted(text)}. Write for example 8.5cm"
         )
     return Size(sides[0], sides[1] if len(sides) > 1 else None, True, text)
 
@@ -100,7 +105,9 @@ def dpi(text: str) -> float:
     except ValueError:
         value = math.nan
     if not 1.0 <= value <= _MOST_DPI:
-        raise ValueError(f"must be dots per inch, 1 to {_MOST_DPI:g}; got {text!r}. Write for example 300")
+        raise ValueError(
+            f"must be dots per inch, 1 to {_MOST_DPI:g}; got {quoted(text)}. Write for example 300"
+        )
     return value
 
 

@@ -247,7 +247,12 @@ def writing(what: str) -> Iterator[None]:
 
 def _date() -> str:
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    now = datetime.fromtimestamp(int(epoch), UTC) if epoch.isdecimal() else datetime.now(UTC)
+    try:
+        now = datetime.fromtimestamp(int(epoch), UTC) if epoch.isdecimal() else datetime.now(UTC)
+    except (OverflowError, ValueError, OSError):
+        raise Stop(
+            2, f"SOURCE_DATE_EPOCH must be seconds since 1970, up to the year 9999; got {epoch}. Correct it"
+        ) from None
     return now.strftime("%Y-%m-%dT%H:%M:%SZ")
 
 

@@ -6,16 +6,20 @@ import numpy as np
 import pytest
 
 from lietool import figure, paths
-from lietool.render import draw, scene
+from lietool.render import scene
 
 
 def shown(name: str, **params: object) -> dict[str, Any]:
     return dict(figure.load(name, (paths.FIGURES,)).draw(**params).numbers)
 
 
-def labels(name: str, **params: object) -> list[draw.compose.PlacedLabel]:
-    drawing = figure.load(name, (paths.FIGURES,)).draw(**params)
-    return list(draw.render(drawing.picture, size=(1200, 900), draft=True).labels)
+def picture(name: str, **params: object) -> scene.Picture:
+    return figure.load(name, (paths.FIGURES,)).draw(**params).picture
+
+
+def texts(name: str, **params: object) -> list[str]:
+    views = picture(name, **params).views
+    return [record.text for view in views for record in view.records if isinstance(record, scene.Label)]
 
 
 def plane_turn(degrees: float) -> np.ndarray:
@@ -41,7 +45,7 @@ class TestTranslations:
         ],
     )
     def test_shapes_that_are_one_have_one_name(self, b, b2, name):
-        assert name in [label.text for label in labels("commute", b=b, b2=b2)]
+        assert name in texts("commute", b=b, b2=b2)
 
     def test_halfway_each_has_done_its_first_step(self):
         numbers = shown("commute", b=(1.0, 2.0), b2=(3.0, -1.0), place=(0.0, 0.0), t=0.5)
@@ -84,8 +88,7 @@ class TestRotationsOfSpace:
     )
     def test_where_they_commute_it_says_so(self, params):
         assert shown("commute", group="rotation3", **params)["angle_between"] < 1e-12
-        texts = [label.text for label in labels("commute", group="rotation3", **params)]
-        assert "two orders, the same end: they commute" in texts
+        assert "two orders, the same end: they commute" in texts("commute", group="rotation3", **params)
 
     def test_a_quarter_turn_each(self):
         numbers = shown("commute", group="rotation3", angle=90.0, angle2=90.0)
@@ -133,8 +136,7 @@ class TestRigid:
 
     @pytest.mark.parametrize("params", [{"angle": 0.0}, {"angle": 360.0}, {"b": (0.0, 0.0)}])
     def test_where_the_order_does_not_matter_it_says_so(self, params):
-        texts = [label.text for label in labels("transform2", kind="rigid", **params)]
-        assert "two orders, the same end" in texts
+        assert "two orders, the same end" in texts("transform2", kind="rigid", **params)
 
 
 class TestAboutAPoint:
@@ -162,10 +164,9 @@ KINDS = [
 @pytest.mark.parametrize(
     ("name", "kind"), KINDS, ids=lambda x: x if isinstance(x, str) else "-".join(x.values())
 )
-def test_no_label_is_cut_or_overlaps_another(name, kind):
+def test_no_label_is_cut_or_overlaps_another(name, kind, placed):
     for extreme in EXTREMES:
-        placed = labels(name, **kind, **extreme)
-        boxes = np.array([label.box for label in placed])
+        boxes = np.array([label.box for label in placed(picture(name, **kind, **extreme))])
         assert boxes.min() >= 4 and boxes[:, 2].max() <= 1196 and boxes[:, 3].max() <= 896, extreme
         low, high = boxes[:, None, :2], boxes[None, :, 2:]
         over = (low < high).all(axis=-1)

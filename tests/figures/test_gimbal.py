@@ -5,7 +5,7 @@ import pytest
 
 from lietool import figure, paths
 from lietool.lie import euler
-from lietool.render import draw, scene, style
+from lietool.render import scene, style
 
 
 class TestGimbal:
@@ -54,19 +54,23 @@ class TestGimbal:
 
 
 class TestMotion:
-    def placed(self, theta2: float) -> dict[str, list[np.ndarray]]:
+    @pytest.fixture
+    def names(self, placed):
         """Where the names of the axes on the left lie, in page units."""
-        picture = figure.load("gimbal", (paths.FIGURES,)).draw(theta2=theta2).picture
-        labels = draw.render(picture, size=(600, 450), draft=True).labels
-        return {
-            label.text: np.array([label.box[0] + label.box[2], label.box[1] + label.box[3]], float)
-            for label in labels
-            if label.text.startswith(r"$\theta") and "=" not in label.text and label.box[2] < 300
-        }
+
+        def found(theta2: float) -> dict[str, np.ndarray]:
+            picture = figure.load("gimbal", (paths.FIGURES,)).draw(theta2=theta2).picture
+            return {
+                label.text: np.array([label.box[0] + label.box[2], label.box[1] + label.box[3]], float)
+                for label in placed(picture, 0.5)
+                if label.text.startswith(r"$\theta") and "=" not in label.text and label.box[2] < 300
+            }
+
+        return found
 
     @pytest.mark.parametrize("theta2", [-89.9, -84.0, -70.0, -50.0, 0.0])
-    def test_names_move_evenly(self, theta2):
-        here, next_ = self.placed(theta2), self.placed(theta2 - 0.1)
+    def test_names_move_evenly(self, theta2, names):
+        here, next_ = names(theta2), names(theta2 - 0.1)
         assert set(here) == set(next_) == {rf"$\theta_{k}$" for k in (1, 2, 3)}
         for name, at in here.items():
             assert np.abs(at - next_[name]).max() <= 8.0, name

@@ -8,7 +8,7 @@ from lietool.figures.ch2 import _groups_classes, _groups_cube, _groups_marks
 
 from lietool import figure, paths
 from lietool.lie import groups
-from lietool.render import draw, scene, style
+from lietool.render import scene, style
 
 GROUPS = figure.load("groups", (paths.FIGURES,))
 
@@ -99,9 +99,9 @@ class TestLabels:
         [{}, *({"diagram": d, "n": n} for d in ("inclusions", "hierarchy") for n in ("both", "2", "3"))],
         ids=str,
     )
-    def test_none_is_cut_or_meets_another(self, params):
+    def test_none_is_cut_or_meets_another(self, params, placed):
         picture = GROUPS.draw(**params).picture
-        boxes = np.array([label.box for label in draw.render(picture, draft=True).labels])
+        boxes = np.array([label.box for label in placed(picture)])
         assert boxes[:, :2].min() >= 20 and (boxes[:, 2:] <= np.array(picture.size) - 20).all()
         for a, b in itertools.combinations(boxes, 2):
             assert (a[2:] <= b[:2]).any() or (b[2:] <= a[:2]).any()

@@ -78,6 +78,17 @@ def test_small_singular_values_keep_their_digits(n):
                 assert max(relative) <= 2e-14
 
 
+@pytest.mark.parametrize("n", [2, 3])
+def test_numbers_that_have_lost_bits_are_still_taken_apart(n):
+    one, tiny = np.eye(n), 5e-324
+    A = np.stack([tiny * one, 1e-320 * (one + 1.0), 1e-315 * (one + 1.0), 1e-310 * (one + 1.0)])
+    U, d, V = polar.svd(A, check=False)
+    assert_rotation(U)
+    assert_rotation(V)
+    assert np.array_equal(d[0], np.full(n, tiny))
+    np.testing.assert_allclose(U * d[..., None, :] @ V.swapaxes(-1, -2), A, rtol=0, atol=n * n * tiny)
+
+
 def test_scipy_agrees():
     A = np.random.default_rng(5).normal(size=(30, 3, 3))
     A[np.linalg.det(A) < 0] *= -1.0

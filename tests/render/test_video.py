@@ -58,11 +58,11 @@ def test_the_same_frames_are_the_same_file():
 @pytest.mark.parametrize(
     ("images", "words"),
     [
-        ([], "export.mp4: frames must not be empty"),
-        ([np.zeros((4, 4), np.uint8)], "export.mp4: image must be uint8"),
-        ([*frames(1), *frames(1, 80)], "export.mp4: frames must be of one shape"),
-        (frames(2, 45), "export.mp4: frames must have an even width and height; got 120 x 45"),
-        (frames(2, 90, 121), "export.mp4: frames must have an even width and height; got 121 x 90"),
+        ([], "video.mp4: frames must not be empty"),
+        ([np.zeros((4, 4), np.uint8)], "video.mp4: image must be uint8"),
+        ([*frames(1), *frames(1, 80)], "video.mp4: frames must be of one shape"),
+        (frames(2, 45), "video.mp4: frames must have an even width and height; got 120 x 45"),
+        (frames(2, 90, 121), "video.mp4: frames must have an even width and height; got 121 x 90"),
     ],
 )
 def test_what_is_no_film_is_refused(images, words):
