@@ -34,11 +34,14 @@ def drawn(
     """Return a shape whose vertices are V (n, 2)."""
     at = place.at(V)
     ends = topology.edges("global_interp", pair.faces).ends
+    # Where triangles are small on the page, their edges must not fill them.
+    reach = np.median(np.linalg.norm(pair.source[ends[:, 0]] - pair.source[ends[:, 1]], axis=1)) * place.scale
+    fine = style.HAIR * float(np.clip(reach / 14.0, 0.4, 1.0))
     records: list[Record] = [Surface(at, pair.faces, color, material="flat")]
     if flipped is not None and flipped.any():
         records.append(Surface(at, pair.faces[flipped], style.WRONG, material="flat"))
     records += [
-        Lines(broken(at[ends]), style.INK, style.HAIR, alpha=_FINE),
+        Lines(broken(at[ends]), style.INK, fine, alpha=_FINE),
         Lines(at[np.append(pair.boundary, pair.boundary[0])], style.INK, edge),
     ]
     eyes = [v for name, v in pair.marks.items() if name.startswith("eye")]

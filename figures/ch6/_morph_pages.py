@@ -50,7 +50,7 @@ def local(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
     corners, at = _morph.apart(pair, choice, t)
     place = _morph_stages.stage(pair, _extents(pair, choice))
     gap = _morph_stages.gaps(pair, corners).max() / _morph_stages.side(pair)
-    said = f"corners that should meet are up to {gap:.1f} edges from their middle"
+    said = f"corners that should meet are up to {gap:.2g} edges from their middle"
     picture = _morph_stages.torn(pair, corners, place, t, said)
     return Drawing(picture, {"corners": corners, "maps": at, "largest_gap": gap})
 

@@ -96,7 +96,7 @@ def maps(pair: Shape, at: Array, t: float) -> scene.Picture:
     """Return both shapes with some triangles coloured, and below, each of these under its map A_i(t)."""
     chosen = shown_maps(pair)
     tones = style.SHELL_FILLS
-    boxes = ((80.0, 470.0, 440.0, 300.0), (680.0, 470.0, 440.0, 300.0))
+    boxes = ((80.0, 430.0, 440.0, 340.0), (680.0, 430.0, 440.0, 340.0))
     scale = min(fit(V, box).scale for V, box in zip((pair.source, pair.target), boxes, strict=True))
     records: list[scene.Record] = []
     few = len(pair.faces) <= 8
@@ -146,13 +146,13 @@ def _below(pair: Shape, chosen: Array, at: Array, tones: tuple[str, ...]) -> lis
     records: list[scene.Record] = []
     for k, i in enumerate(chosen):
         middle = 600.0 + 375.0 * (k - 0.5 * (len(chosen) - 1))
-        place = Plane((middle - 108.0, 258.0), scale)
+        place = Plane((middle - 108.0, 226.0), scale)
         before = np.concatenate([corners[k], corners[k, :1]])
         records += _lit(place, corners[k] @ at[i].T, tones[k])
         records.append(place.line(before, style.BEFORE_EDGE, style.EDGE, dash=(9.0, 7.0)))
         wide = brackets.width(full[k])
-        records += brackets.matrix(full[k], middle - 18.0, 258.0)
-        records.append(_label(rf"$A_{{{i + 1}}}$", middle - 18.0 + 0.5 * wide, 330.0))
+        records += brackets.matrix(full[k], middle - 18.0, 226.0)
+        records.append(_label(rf"$A_{{{i + 1}}}$", middle - 18.0 + 0.5 * wide, 298.0))
     return records
 
 

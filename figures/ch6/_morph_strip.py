@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lietool.interp import shape
+from lietool.mesh import topology
 from lietool.render import scene, style
 from lietool.render.plane import Plane
 from lietool.render.plot import Axes, number
@@ -148,7 +149,7 @@ def _row(
 def _counted(
     place: Plane, height: float, middle: float, way: _morph.Way, V: Array, turned: Array
 ) -> list[scene.Record]:
-    """How many triangles are turned over; where they are few, a ring shows where."""
+    """How many triangles are turned over; where they are few, rings show where."""
     count = int(turned.sum())
     tone = style.WRONG if count else style.MUTED
     at = (middle, height, 0.0)
@@ -156,10 +157,13 @@ def _counted(
         scene.Label(f"{count} flipped", at, tone, style.SMALL_TEXT, anchor="cn", halo=False)
     ]
     if 0 < count < _FEW * len(turned):
-        corners = V[way.pair.faces[turned]].reshape(-1, 2)
-        center = corners.mean(axis=0)
-        radius = float(np.linalg.norm(corners - center, axis=1).max()) + 12.0 / place.scale
-        records.append(place.circle(center, radius, style.WRONG, style.EDGE))
+        faces = way.pair.faces[turned]
+        _, part = topology.components(len(V), np.concatenate([faces[:, :2], faces[:, 1:]]))
+        for k in np.unique(part[faces[:, 0]]):
+            corners = V[part == k]
+            center = corners.mean(axis=0)
+            radius = float(np.linalg.norm(corners - center, axis=1).max()) + 12.0 / place.scale
+            records.append(place.circle(center, radius, style.WRONG, style.EDGE))
     return records
 
 

@@ -234,7 +234,7 @@ def global_interp(
         Literal["area", "equal"], Param("of the triangles in the energy", only=_WHOLE)
     ] = "area",
     steps: Annotated[
-        int, Param("frames from either end to the moment t", low=1, high=4, only=("stage", "frames"))
+        int, Param("frames from either end to the moment t", low=1, high=3, only=("stage", "frames"))
     ] = 2,
     source: Annotated[Path | None, Param("your own shape: an outline (svg, csv, json) or a mesh")] = None,
     target: Annotated[Path | None, Param("the shape that it turns into, of the same kind")] = None,

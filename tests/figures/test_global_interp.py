@@ -58,7 +58,7 @@ class TestLoci:
         pair = shapes.fish()
         a, b = pair.marks["nose"], pair.marks["tail"]
         shown = [
-            GLOBAL.draw(**GLOBAL.plate_params("B6.7") | {"winding": k, "steps": 4}).numbers for k in (0, -1)
+            GLOBAL.draw(**GLOBAL.plate_params("B6.7") | {"winding": k, "steps": 3}).numbers for k in (0, -1)
         ]
         turns = []
         for numbers in shown:
