@@ -194,5 +194,10 @@ def cat() -> Skeleton:
     target |= {"far hind1": -40.0, "far hind2": -14.0, "far hind3": -40.0}
     target |= {"tail1": 6.0, "tail2": 10.0, "tail3": 12.0, "tail4": 8.0, "tail5": 4.0}
     marks = {"nose": (1.49, 0.41), "tail": (-2.62, 0.63), "eye": (1.14, 0.58)}
-    marks |= {"ear": (0.79, 1.05), "brow": (1.21, 1.03), "inner fore": (0.5, 0.08), "inner hind": (-0.8, 0.05)}
+    marks |= {
+        "ear": (0.79, 1.05),
+        "brow": (1.21, 1.03),
+        "inner fore": (0.5, 0.08),
+        "inner hind": (-0.8, 0.05),
+    }
     return Skeleton(tuple(bones), (Pose(source), Pose(target, (1.2, 0.9))), 0.115, 0.045, marks)

@@ -197,9 +197,7 @@ def _weights(skeleton: Skeleton, points: Array) -> Array:
     return share / share.sum(axis=0)
 
 
-def _posed(
-    skeleton: Skeleton, pose: Pose, points: Array, weights: Array, marks: Mapping[str, int]
-) -> Array:
+def _posed(skeleton: Skeleton, pose: Pose, points: Array, weights: Array, marks: Mapping[str, int]) -> Array:
     """Points after all bones have turned: each goes where its bones, by their weights, take it."""
     motion: dict[str, tuple[complex, complex]] = {}
     for bone in skeleton.bones:
