@@ -1,4 +1,4 @@
-"""Compare sparse solvers on the matrices of the interpolation: why `interp.system` has the one it has."""
+"""Compare sparse solvers on matrices of the interpolation: why `interp.elimination` has the one it has."""
 
 import importlib
 import importlib.util
@@ -106,13 +106,13 @@ def _least(f: Callable[[], Any], repeats: int) -> tuple[float, Any]:
 def _superlu(A: Any, b: NDArray[Any], repeats: int) -> tuple[float, float, float, NDArray[Any]]:
     from scipy.sparse import csc_array
 
-    from lietool.interp import system
+    from lietool.interp import elimination
 
-    first, found = _least(lambda: system.superlu(A, False), repeats)
+    first, found = _least(lambda: elimination.superlu(A, False), repeats)
     order = np.argsort(found.perm_c)
     rows: Any = A[order]
     ordered = csc_array(rows[:, order])
-    again, _ = _least(lambda: system.superlu(ordered, True), repeats)
+    again, _ = _least(lambda: elimination.superlu(ordered, True), repeats)
     solve, x = _least(lambda: found.solve(b.T), repeats)
     return first, again, solve, x.T
 

@@ -211,7 +211,7 @@ def _assembly(sums: tuple[terms.Term, ...], F: Index, free: Freedoms, rows: Rows
     n, soft = len(free.part), [rows.columns[k] for k in rows.kinds[1]]
     pairs = np.reshape([c for c in soft if len(c) == 2], (-1, 2)).astype(np.intp)
     matrix = terms.pattern(F, n, pairs)
-    layout = system.layout(matrix, rows.held, bool(rows.real.any()), ordered)
+    layout = system.layout(matrix, free.shape, rows.held, bool(rows.real.any()), ordered)
     holding = np.concatenate([rows.held, [int(c[0]) for c in soft]]).astype(np.intp)
     return Assembly(sums, matrix, layout, freedom.anchors(free, holding))
 

@@ -13,9 +13,9 @@ Where nothing in H holds a part of the shape, anchors do: a weight on one or two
 condition takes back again, so that H can be factored whatever holds the shape.
 
 Where the matrix changes with every frame the order of elimination is found once, and with it the factors of
-a new frame have the pattern of the old.  Of the solvers that were tried SuperLU, with a panel of one column,
-is the fastest for these small and very sparse factors, and the only one that takes complex matrices as they
-are: see `lietool bench interp --solvers`.
+a new frame have the pattern of the old.  Of the solvers that were tried SuperLU, with narrow panels, is the
+fastest for these very sparse factors, and the only one that takes complex matrices as they are: see
+`lietool bench interp --solvers`.
 """
 
 from dataclasses import dataclass
@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lietool.interp import elimination
 from lietool.interp.terms import Pattern
 
 Array = NDArray[np.float64]
@@ -70,18 +71,20 @@ class Layout:
         return np.concatenate([real, imag, -imag])
 
 
-def layout(matrix: Pattern, fixed: Index, real: bool, ordered: bool) -> Layout:
+def layout(matrix: Pattern, v: Complex, fixed: Index, real: bool, ordered: bool) -> Layout:
     """Return the layout of a system.
 
     Parameters
     ----------
     matrix : Pattern
+    v : ndarray of complex, shape (n,)
+        Where the vertices are at rest.
     fixed : ndarray of int
         The vertices whose places are given.
     real : bool
         Whether the unknowns are to be x and y.
     ordered : bool
-        Whether to look for an order of elimination that serves every frame.
+        Whether to look for an order of elimination that serves every frame; large systems need one anyway.
 
     Returns
     -------
@@ -101,8 +104,9 @@ def layout(matrix: Pattern, fixed: Index, real: bool, ordered: bool) -> Layout:
         fixed, n = np.concatenate([fixed, fixed + n]), 2 * n
     whole = csc_array((number, (row, column)), (n, n))
     free = np.setdiff1d(np.arange(n), fixed)
-    if ordered:
-        free = free[_order(csc_array(whole[free][:, free]))]
+    if ordered := ordered or len(free) >= elimination.LARGE:
+        x = np.tile(np.stack([v.real, v.imag], axis=1), (2 if real else 1, 1))
+        free = free[elimination.order(csc_array(whole[free][:, free]), x[free])]
     below = whole[free]
     inner, cross = (_places(below[:, columns]) for columns in (free, fixed))
     return Layout(matrix.count, real, ordered, free, fixed, inner, cross)
@@ -111,32 +115,6 @@ def layout(matrix: Pattern, fixed: Index, real: bool, ordered: bool) -> Layout:
 def _places(part: Any) -> Places:
     part.sort_indices()
     return part.data - 1, part.indices.astype(np.int32), part.indptr.astype(np.int32)
-
-
-def _order(pattern: Any) -> Index:
-    """Return an order of elimination for a symmetric pattern: minimum degree, as SuperLU finds it."""
-    from scipy.sparse import csc_array
-
-    n = pattern.shape[0]
-    if not n:
-        return np.zeros(0, np.intp)
-    # A matrix of this pattern that is diagonally dominant: only the pattern matters.
-    data = np.where(pattern.indices == np.repeat(np.arange(n), np.diff(pattern.indptr)), float(n), -1e-3)
-    factor = superlu(csc_array((data, pattern.indices, pattern.indptr), (n, n)), False)
-    return np.argsort(factor.perm_c).astype(np.intp)
-
-
-def superlu(matrix: Any, ordered: bool) -> Any:
-    """Factor a positive definite matrix, in its own order or in one that keeps the factors sparse."""
-    from scipy.sparse.linalg import splu
-
-    return splu(
-        matrix,
-        permc_spec="NATURAL" if ordered else "MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        panel_size=1,
-        options={"SymmetricMode": True},
-    )
 
 
 class Factor:
@@ -162,7 +140,7 @@ class Factor:
         place, indices, indptr = at.cross
         self.cross = csc_array((source[place], indices, indptr), (free, fixed))
         # Where every vertex is given there is nothing to solve.
-        self.solver = superlu(self.inner, at.ordered) if free else None
+        self.solver = elimination.superlu(self.inner, at.ordered) if free else None
         self.norm = float(np.max(abs(self.inner).sum(axis=0), initial=0.0))
         self.rows, self.rows_fixed, self.delta = rows[:, at.free], rows[:, at.fixed], delta
         self.beside = self._base(self.rows.astype(self.inner.dtype)) if len(rows) else self.rows

@@ -8,7 +8,7 @@ import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import lsqr, spsolve
 
-from lietool.interp import constraint, energy, shape, system, triangle
+from lietool.interp import constraint, elimination, energy, shape, triangle
 from lietool.mesh import topology
 
 T = np.array([0.0, 0.3, 0.6, 1.0])
@@ -98,6 +98,35 @@ def test_blocks_of_frames_find_what_all_at_once_find(bent, monkeypatch):
     assert shape.solve(prepared, T).vertices == pytest.approx(whole, abs=1e-13)
 
 
+class TestElimination:
+    def factor_size(self, A, order):
+        return elimination.superlu(sp.csc_array(sp.csc_array(A[order])[:, order]), True).L.nnz
+
+    def test_both_orders_keep_factors_sparse(self, shaken, monkeypatch):
+        P, Q, F = shaken
+        A = shape.prepare(P, Q, F).factor.inner
+        orders = [elimination.order(A, P[1:])]
+        monkeypatch.setattr(elimination, "LARGE", 1)
+        orders.append(elimination.order(A, P[1:]))
+        for order in orders:
+            assert np.array_equal(np.sort(order), np.arange(len(P) - 1))
+            assert self.factor_size(A, order) < 0.3 * self.factor_size(A, np.arange(len(P) - 1))
+
+    @pytest.mark.parametrize("error", [energy.FROBENIUS, energy.SIMILARITY])
+    @pytest.mark.parametrize("direction", [False, True])
+    def test_the_order_does_not_matter_to_the_shape(self, shaken, monkeypatch, error, direction):
+        P, Q, F = shaken
+        asked = [constraint.Locus(k, constraint.line(P[k], Q[k])) for k in (3, 400)]
+        if direction:
+            asked.append(constraint.Direction(5, 700, (0.3, 1.0)))
+        found = [shape.solve(shape.prepare(P, Q, F, error=error, constraints=asked), T).vertices]
+        monkeypatch.setattr(elimination, "LARGE", 1)
+        prepared = shape.prepare(P, Q, F, error=error, constraints=asked)
+        assert prepared.assembly.layout.ordered
+        found.append(shape.solve(prepared, T).vertices)
+        assert found[0] == pytest.approx(found[1], abs=1e-8)
+
+
 @pytest.mark.parametrize("error", [energy.FROBENIUS, energy.SIMILARITY])
 def test_where_every_vertex_is_given_nothing_is_left_to_solve(error):
     P, Q = np.array([[0.0, 0], [1, 0], [0, 1]]), np.array([[0.0, 0], [2, 0], [0, 1]])
@@ -110,7 +139,7 @@ def test_where_every_vertex_is_given_nothing_is_left_to_solve(error):
 def test_a_poor_solution_is_improved(bent, monkeypatch):
     P, Q, F = bent
     good = shape.solve(shape.prepare(P, Q, F), T)
-    solver = system.superlu
+    solver = elimination.superlu
 
     class Careless:
         def __init__(self, matrix, ordered):
@@ -119,7 +148,7 @@ def test_a_poor_solution_is_improved(bent, monkeypatch):
         def solve(self, b):
             return self.inner.solve(b) * (1.0 + 1e-8)
 
-    monkeypatch.setattr(system, "superlu", Careless)
+    monkeypatch.setattr(elimination, "superlu", Careless)
     found = shape.solve(shape.prepare(P, Q, F), T)
     assert found.residual.max() < 1e-13
     assert found.vertices == pytest.approx(good.vertices, abs=1e-12)
