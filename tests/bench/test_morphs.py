@@ -1,6 +1,5 @@
 """The benchmark of interpolations: what it times is right, and what is missing is said; no time is judged."""
 
-import importlib.util
 import json
 
 import numpy as np
@@ -12,8 +11,6 @@ from lietool.cli import command
 from lietool.interp import shape
 from lietool.mesh import topology
 from lietool.verbs import _bench_interp
-
-HAVE_IGL = importlib.util.find_spec("igl") is not None
 
 
 @pytest.mark.parametrize("size", [2, 200, 1_000, 30_000])
@@ -70,7 +67,6 @@ def test_exponents_and_factors():
     assert morphs.ahead(rows) == pytest.approx({("E^F", 100): 10.0, ("E^R", 100): 0.5})
 
 
-@pytest.mark.skipif(not HAVE_IGL, reason="libigl is not installed")
 def test_libigl_bends_the_same_strip():
     row = morphs.measure(morphs.LIBIGL, 300, 3)
     assert row.triangles == len(morphs.strip(300)[2]) and row.solve > 0.0
