@@ -106,7 +106,7 @@ def _least(f: Callable[[], Any], repeats: int) -> tuple[float, Any]:
 def _superlu(A: Any, b: NDArray[Any], repeats: int) -> tuple[float, float, float, NDArray[Any]]:
     from scipy.sparse import csc_array
 
-    from lietool.interp import elimination
+    from lietool.mesh import elimination
 
     first, found = _least(lambda: elimination.superlu(A, False), repeats)
     order = np.argsort(found.perm_c)

@@ -24,8 +24,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lietool.interp import elimination
 from lietool.interp.terms import Pattern
+from lietool.mesh import elimination
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

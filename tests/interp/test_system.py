@@ -6,8 +6,8 @@ import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import lsqr, spsolve
 
-from lietool.interp import constraint, elimination, energy, shape, triangle
-from lietool.mesh import topology
+from lietool.interp import constraint, energy, shape, triangle
+from lietool.mesh import elimination, topology
 
 T = np.array([0.0, 0.3, 0.6, 1.0])
 

@@ -71,7 +71,7 @@ def dissection(one: Index, other: Index, x: Array) -> Index:
     order : ndarray of int, shape (n,)
     """
     n = len(x)
-    rank = np.stack([np.argsort(np.argsort(x[:, axis])) for axis in (0, 1)], axis=1)
+    rank = np.argsort(np.argsort(x, axis=0, kind="stable"), axis=0)
     # One digit for each level: 0 and 1 for the halves, 2 for what separates them.
     code, part, side = np.zeros(n, np.int64), np.zeros(n, np.intp), np.zeros(n, np.int64)
     live = np.arange(n)
