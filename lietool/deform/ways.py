@@ -1,4 +1,4 @@
-"""The ways of blending transformations: to parameters, a weighted sum, and back; an argument of every deformer.
+"""The ways of blending transformations: to parameters, a weighted sum, back; an argument of every deformer.
 
 A way turns each A_i into a list of numbers, 0 for the identity; these are
 summed by weights, and the sum is turned into a transformation.  So what the
