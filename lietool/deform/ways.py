@@ -133,11 +133,11 @@ def _decode(name: str, width: int, kernel: way_kernels.Matrix, params: ArrayLike
         A = blocks.run(kernel, (4, 4), (p, 1))
     if A.size and not np.max(np.abs(A)) < np.inf:
         index = checks.first(~np.all(np.isfinite(A), axis=(-1, -2)))
-        checks.fail(where, "params", *_UNDONE, index)
+        checks.fail(where, "params", *UNDONE, index)
     return A
 
 
-_UNDONE = (
+UNDONE = (
     "such that their sum is a transformation",
     "quaternions that cancel each other or an exponential that overflows",
 )

@@ -7,6 +7,9 @@ from lietool.lie import checks
 
 Array = NDArray[np.float64]
 
+CANCELLED = 1e-12
+"""Of the sum of |w|: a smaller sum of w is the rounding of 0."""
+
 
 def matrix(
     where: str, name: str, w: ArrayLike, points: int | None = None, probes: int | None = None

@@ -8,13 +8,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lietool.deform.weight_checks import matrix, positive
+from lietool.deform.weight_checks import CANCELLED, matrix, positive
 from lietool.lie import checks
 
 Array = NDArray[np.float64]
-
-CANCELLED = 1e-12
-"""Of the sum of |w|: a smaller sum of w is the rounding of 0."""
 
 
 def unnormalised(w: ArrayLike) -> Array:

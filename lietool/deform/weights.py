@@ -92,9 +92,8 @@ def distances(points: ArrayLike, centres: ArrayLike) -> Array:
     r = np.empty((len(p), len(c)))
     for start in range(0, len(p), blocks.BLOCK):
         part = p[start : start + blocks.BLOCK, None, :] - c
-        # hypot neither overflows nor vanishes where the squares would.
-        r[start : start + blocks.BLOCK] = np.hypot(np.hypot(part[..., 0], part[..., 1]), part[..., 2])
-    return r
+        r[start : start + blocks.BLOCK] = np.einsum("nki,nki->nk", part, part)
+    return np.sqrt(r, out=r)
 
 
 def inverse_distance(distances: ArrayLike, power: float = 2.0) -> Array:
@@ -122,13 +121,14 @@ def inverse_distance(distances: ArrayLike, power: float = 2.0) -> Array:
         If a distance is negative or nan, the power is not above 0, or a weight overflows.
     """
     where = "weights.inverse_distance"
-    r, p = lengths(where, distances), positive(where, "power", power, 0)
+    r, p = lengths(where, distances), float(positive(where, "power", power, 0))
     largest = np.max(r, initial=0.0, where=np.isfinite(r)) or 1.0
     with np.errstate(over="ignore", divide="ignore", under="ignore"):
-        w = np.maximum(r, NEAREST * largest) ** -p
+        w = np.maximum(r, NEAREST * largest) ** p
+        np.divide(1.0, w, out=w)
     if not np.all(w <= checks.LARGEST):
         index = checks.first(~(w <= checks.LARGEST))
-        got = f"{r[index]:.3g} to the power of {float(p):g}"
+        got = f"{r[index]:.3g} to the power of {p:g}"
         checks.fail(where, "distances", "such that 1 / r^p does not overflow", got, index, "Scale them.")
     return w
 
@@ -158,9 +158,8 @@ def cutoff(distances: ArrayLike, reach: ArrayLike, power: float = 2.0) -> Array:
     """
     where = "weights.cutoff"
     r = lengths(where, distances)
-    d, p = positive(where, "reach", reach, r.shape[1]), positive(where, "power", power, 0)
-    w = np.maximum(1.0 - r / d, 0.0)
-    return np.power(w, p, out=w)
+    d, p = positive(where, "reach", reach, r.shape[1]), float(positive(where, "power", power, 0))
+    return np.maximum(1.0 - r / d, 0.0) ** p
 
 
 def gaussian(distances: ArrayLike, width: ArrayLike) -> Array:
