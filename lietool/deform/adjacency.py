@@ -182,7 +182,7 @@ def turned(x: ArrayLike, turns: ArrayLike) -> Array:
     bad: Mask = np.logical_and(length <= series.ROUNDED, n != 0.0)
     if np.any(bad):
         remedy = "Give 2 pi times the turns times the axis instead."
-        checks.fail(where, "x", "a rotation with an axis", "0", checks.first(bad), remedy)
+        checks.fail(where, "x", "a rotation with an axis", "0", checks.first(np.asarray(bad)), remedy)
     return x * (1.0 + FULL * n / np.where(length > series.ROUNDED, length, 1.0))[..., None]
 
 
@@ -213,7 +213,7 @@ def _pairs(where: str, pairs: ArrayLike, count: int) -> Index:
         checks.fail(where, "pairs", "whole numbers of shape (p, 2)", f"{p.dtype} of shape {p.shape}", None)
     bad = ((p < 0) | (p >= count)).any(axis=1)
     if bad.any():
-        index = checks.first(bad)
+        index = checks.first(np.asarray(bad))
         checks.fail(where, "pairs", f"nodes, 0 to {count - 1}", f"{p[index].tolist()}", index)
     return p.astype(np.intp, copy=False)
 
