@@ -11,7 +11,15 @@ from typing import Any
 
 import click
 
-from lietool.verbs import _bench_accuracy, _bench_interp, _bench_process, _bench_speed, _bench_tables, _table
+from lietool.verbs import (
+    _bench_accuracy,
+    _bench_interp,
+    _bench_pairs,
+    _bench_process,
+    _bench_speed,
+    _bench_tables,
+    _table,
+)
 
 # What the project promises; nothing fails where a machine is slower.
 HELP_FACTOR, COLD_SECONDS, PLATE_SECONDS, MEMORY_FACTOR = 1.3, 0.6, 0.4, 1.05
@@ -30,6 +38,7 @@ for _subcommand in (
     _bench_tables.table2,
     _bench_interp.interp,
     _bench_interp.interp_work,
+    _bench_pairs.pairs,
 ):
     command.add_command(_subcommand)
 
