@@ -286,7 +286,7 @@ def _alone(island: _Island) -> list[scene.Record]:
     for t, A in zip(np.linspace(0.0, 1.0, len(_along(island))), _along(island), strict=True):
         x = float(_STEPS.at(t, 0.0)[0])
         records += Plane((x, _STRIP), _UNIT).glyph(A, *island.look, size=_SMALL, width=style.THIN)
-    text = r"a path in $SO(2)$: $\det = 1$ all along"
+    text = r"a path in $SO(2)$: $\mathrm{det} = 1$ all along"
     return [
         *records,
         scene.Label(text, (600.0, _AXIS.box[1] - 14.0, 0.0), style.INK, style.SMALL_TEXT, anchor="ct"),

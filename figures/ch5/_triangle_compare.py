@@ -192,7 +192,8 @@ def _facts(given: maps.Map) -> list[scene.Record]:
     x, y = 850.0, 322.0
     values = np.sort_complex(np.linalg.eigvals(given.A))[::-1]
     if np.abs(values.imag).max() <= 1e-9 * np.abs(values).max():
-        said = rf"$\lambda = {fixed(values[0].real)},\ {fixed(values[1].real)}$"
+        # In braces, so that a minus after a comma is a sign.
+        said = rf"$\lambda = {{{fixed(values[0].real)}}},\ {{{fixed(values[1].real)}}}$"
     else:
         said = rf"$\lambda = {fixed(values[0].real)} \pm {fixed(abs(values[0].imag))}\,i$"
     collapses = bool(np.any((given.exits("linear") >= 0.0) & (given.exits("linear") <= 1.0)))

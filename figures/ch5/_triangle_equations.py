@@ -61,7 +61,7 @@ def _factors(given: maps.Map, method: str, t: float) -> tuple[Factor, ...]:
         if method == "linear":
             det = float(np.linalg.det(both[1]))
             names = ("A", "A", r"(1 - t)\,I + t\,A", "A^L(t)")
-            return (Factor(names, both, both, r"\subset", f"\\det = {fixed(det)}", det <= 0.0),)
+            return (Factor(names, both, both, r"\subset", rf"\mathrm{{det}} = {fixed(det)}", det <= 0.0),)
         L = logarithm(given)
         names = ("A", r"\log A", r"t\,\log A", maps.NAMES[method])
         return (Factor(names, both, (L, t * L), r"\log", r"\exp"),)
@@ -77,7 +77,7 @@ def _factors(given: maps.Map, method: str, t: float) -> tuple[Factor, ...]:
     names = ("S", "S", r"(1 - t)\,I + t\,S", "S(t)")
     wrong = bool(np.linalg.eigvalsh(S)[0] <= 0.0)
     return turn, Factor(
-        names, (given.S, S), (given.S, S), r"\subset", r"\det = " + fixed(np.linalg.det(S)), wrong
+        names, (given.S, S), (given.S, S), r"\subset", r"\mathrm{det} = " + fixed(np.linalg.det(S)), wrong
     )
 
 

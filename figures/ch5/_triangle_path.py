@@ -201,7 +201,7 @@ def _triangles(given: maps.Map, method: str, steps: int, beyond: float, t: float
     det = float(np.linalg.det(now))
     if det <= 0.0:
         main = text = style.WRONG
-    said = rf"${FORMULAS[method]},\ \ t = {fixed(t)}\mathrm{{:}}\ \ \det = {fixed(det)}$"
+    said = rf"${FORMULAS[method]},\ \ t = {fixed(t)}\mathrm{{:}}\ \ \mathrm{{det}} = {fixed(det)}$"
     return [
         *line.row(shape, A, times, _ROW, scale),
         *line.axis(_AXIS),

@@ -25,7 +25,8 @@ Corners = tuple[float, float, float, float, float, float]
                 "corners q, and the letter with it. A homotopy A(t) of its linear part, from I at t = 0 "
                 "to A at t = 1, says which triangle is between them. Four of them, each on its lane: "
                 "the straight line, the two ways that take rotation and stretch apart, and the power of "
-                "A. Outlined: the triangle at t. They disagree."
+                "A. Outlined: the triangle at t; on the lanes all are drawn smaller than both ends. They "
+                "disagree."
             ),
         ),
         "B5.1b": Plate(
@@ -34,7 +35,8 @@ Corners = tuple[float, float, float, float, float, float]
             caption=(
                 "The same triangles and the map between them in numbers: the corners of both, as "
                 "columns over a row of ones, determine the only affine map that carries one to the "
-                "other. The upper left part of it is A, which the four ways on the lanes join to I."
+                "other. The upper left part of it is A, which the four ways on the lanes join to I; the "
+                "triangles there are drawn smaller than both ends."
             ),
             params={"equations": True},
         ),

@@ -55,7 +55,9 @@ def glass(camera: Camera, height: float) -> list[scene.Record]:
         ),
         scene.Lines(joined([height * ring, *edges]), style.GROUP_TEXT, style.EDGE),
         scene.Lines([(0, 0, 0), (0, 0, height)], style.MUTED, style.THIN, 0.8, dash=(2.0, 6.0)),
-        scene.Label(r"$\det = 0$", 0.5 * right[1], style.GROUP_TEXT, style.SMALL_TEXT, (16.0, -6.0), "lt"),
+        scene.Label(
+            r"$\mathrm{det} = 0$", 0.5 * right[1], style.GROUP_TEXT, style.SMALL_TEXT, (16.0, -6.0), "lt"
+        ),
     ]
 
 
