@@ -235,7 +235,7 @@ def _through(
         part = slice(start, start + blocks.BLOCK) if chosen is None else chosen[start : start + blocks.BLOCK]
         v = np.ascontiguousarray(prepared.local[part].T)
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            moved = np.array(way.kernel(_mixed(way, columns, prepared.weights, part), v)).T
+            moved = np.array(way.kernel(_mixed(way, columns, prepared.weights, part), list(v))).T
         moved += prepared.centre[part]
         if not np.max(np.abs(moved)) < np.inf:
             bad = int(np.argmax(~np.all(np.isfinite(moved), axis=1)))
