@@ -113,6 +113,7 @@ def test_the_normal_part_of_a_map_does_not_matter():
     np.testing.assert_allclose(stitch.solve(at, A).vertices, stitch.solve(at, other).vertices, atol=1e-12)
 
 
+@pytest.mark.equation("M 5")
 def test_one_affine_transformation_of_all_faces_moves_the_mesh_by_it():
     V, F = both()
     g = affine.phi_so([0.3, 2.0, -1.0, 5.0, 6.0, 7.0, 0.4, 0.1, 0.0, -0.3, 0.2, 0.1])
