@@ -96,9 +96,9 @@ def prepare(
     if np.any(flat):
         k = checks.first(flat)
         checks.fail(where, "rest", "invertible frames", f"singular values {np.round(d[k], 6)}", k)
-    return Prepared(
-        np.linalg.inv(r), move.prepare(points, r[:, :3, 3] if origin is None else origin, weights)
-    )
+    inverse = np.empty_like(r)
+    inverse[...] = np.linalg.inv(r)
+    return Prepared(inverse, move.prepare(points, r[:, :3, 3] if origin is None else origin, weights))
 
 
 def _frames(where: str, name: str, frames: ArrayLike, k: int | None = None, sequence: bool = False) -> Array:

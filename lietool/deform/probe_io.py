@@ -75,7 +75,7 @@ class Probes:
 
 @dataclass(frozen=True)
 class Poses:
-    """A sequence: frames (f, k, 4, 4), turns (f, k, 3), stated (f, k) as `probe.follow` takes them, and fps."""
+    """A sequence: frames (f, k, 4, 4), turns (f, k, 3) and stated (f, k) for `probe.follow`, and fps."""
 
     frames: Array
     turns: Array

@@ -55,13 +55,11 @@ class Table:
         must = " or ".join(_WORDS[shape] for shape in shapes)
         try:
             a = np.array(value, dtype=object)
-            good = a.shape in shapes and all(
-                isinstance(x, int | float) and not isinstance(x, bool) for x in a.ravel()
-            )
-            a = a.astype(np.float64) if good else a
+            good = all(isinstance(x, int | float) and not isinstance(x, bool) for x in a.ravel())
+            a = a.astype(np.float64) if good and a.shape in shapes else None
         except (ValueError, OverflowError):
-            good = False
-        if not good:
+            a = None
+        if a is None:
             self.fail(key, must, shown(value))
         if not np.all(np.abs(a) <= checks.LARGEST):
             self.fail(key, f"finite, {must}", shown(value))
