@@ -46,7 +46,7 @@ def of_function(name: str) -> list[tuple[str, str]]:
 
 
 def of_expressions(expressions: list[str]) -> list[tuple[str, str]]:
-    """Compute expressions in which ``np`` and the modules of `lietool.lie` and `lietool.interp` are known.
+    """Compute expressions in which ``np`` and the modules of our mathematics are known.
 
     Parameters
     ----------
@@ -72,8 +72,10 @@ def of_expressions(expressions: list[str]) -> list[tuple[str, str]]:
 
 
 def _module(name: str) -> ModuleType:
-    part = "lie" if importlib.util.find_spec(f"lietool.lie.{name}") else "interp"
-    return importlib.import_module(f"lietool.{part}.{name}")
+    for part in ("lie", "interp", "deform"):
+        if importlib.util.find_spec(f"lietool.{part}.{name}"):
+            return importlib.import_module(f"lietool.{part}.{name}")
+    return importlib.import_module(f"lietool.mesh.{name}")
 
 
 def show(value: Any) -> str:
