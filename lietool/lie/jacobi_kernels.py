@@ -124,6 +124,8 @@ def _pair(rows: List, i: int, j: int, n: int) -> NDArray[np.bool_]:
     c = 1.0 / np.sqrt(1.0 + t * t)
     s = t * c
     swap = alpha < beta
+    # After an exchange the sweep meets one pair twice and another not at all.
+    restless |= swap
     c, s = np.where(swap, s, c), np.where(swap, -c, s)
     for k in range(0, 2 * n * n, n):
         rows[i + k], rows[j + k] = _rotate(rows[i + k], rows[j + k], c, s)

@@ -1,5 +1,7 @@
 """A = R S and A = U diag(d) V^T at any condition number and scale."""
 
+import itertools
+
 import mpmath
 import numpy as np
 import pytest
@@ -116,6 +118,25 @@ def test_diagonalisation_is_unique_but_for_order_and_signs():
     assert_rotation(other)
     np.testing.assert_allclose(other @ D @ other.T, R @ D @ R.T, atol=2e-15)
     assert np.max(np.abs(other - R)) > 0.5
+
+
+def test_matrices_with_an_axis_of_their_own():
+    # Zeros let a sweep exchange columns without turning any, and so pass over a pair.
+    rng = np.random.default_rng(12)
+    M = np.eye(2) + 0.4 * rng.normal(size=(1500, 2, 2))
+    M = M[np.linalg.det(M) > 0.05]
+    A = np.zeros((len(M), 3, 3))
+    A[:, 0, 0], A[:, 1:, 1:] = rng.uniform(0.5, 2.0, len(M)), M
+    orders = np.array(list(itertools.permutations(range(3))))
+    A = np.concatenate([A[:, order][:, :, order] for order in orders])
+    R, S = polar.decompose(A)
+    assert_rotation(R)
+    np.testing.assert_allclose(R @ S, A, atol=1e-14)
+    theirs = np.stack([scipy_polar(a)[1] for a in A[::40]])
+    np.testing.assert_allclose(S[::40], theirs, atol=1e-13)
+    U, d, V = polar.svd(A)
+    np.testing.assert_allclose(d, np.linalg.svd(A, compute_uv=False), atol=1e-14)
+    np.testing.assert_allclose((U * d[:, None, :]) @ np.swapaxes(V, -1, -2), A, atol=1e-14)
 
 
 @pytest.mark.parametrize("n", [2, 3])
