@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lietool.deform import adjacency, local_maps
-from lietool.lie import polar
+from lietool.lie import checks, polar
 from lietool.mesh import laplacian, topology
 
 Array = NDArray[np.float64]
@@ -33,6 +33,10 @@ Mask = NDArray[np.bool_]
 
 COLLAPSED = 1e-12
 """A face is collapsed where its smaller singular value is at most so much of its larger one."""
+
+
+LARGEST = 1e70
+"""Of coordinates: squares of areas of larger meshes overflow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +156,8 @@ def summarise(values: ArrayLike, weights: ArrayLike) -> Summary:
         If the shapes differ, a value is nan, or the weights are negative or all 0.
     """
     where = "distortion.summarise"
-    x, w = np.asarray(values, float), np.asarray(weights, float)
+    x = checks.array(where, "values", values, (), check=False)
+    w = checks.array(where, "weights", weights, (), check=False)
     if x.ndim != 1 or not len(x) or x.shape != w.shape:
         topology.fail(where, "values and weights", "two arrays of one shape (m,)", f"{x.shape} and {w.shape}")
     if np.isnan(x).any():
@@ -255,9 +260,19 @@ def folds(rest: ArrayLike, F: ArrayLike, deformed: ArrayLike) -> Index:
     return pairs[(here < 0.0) & (there < 0.0)]
 
 
+def bounded(where: str, name: str, V: ArrayLike) -> Array:
+    """Return V as finite points (n, 3) of at most LARGEST, so that what is computed of them is finite."""
+    a = topology.vertices(where, name, V, 3)
+    size = np.max(np.abs(a), initial=0.0)
+    if size > LARGEST:
+        topology.fail(where, name, f"at most {LARGEST:g} in size", f"{size:.3g}", "Take another unit.")
+    return a
+
+
 def _pair(where: str, rest: ArrayLike, F: ArrayLike, deformed: ArrayLike) -> tuple[Array, Index, Array]:
-    V, F = laplacian.checked(where, rest, F)
-    U = topology.vertices(where, "deformed", deformed, 3)
+    V = bounded(where, "rest", rest)
+    V, F = laplacian.checked(where, V, F)
+    U = bounded(where, "deformed", deformed)
     if len(U) != len(V):
         topology.fail(where, "deformed", f"{len(V)} vertices, as many as at rest", f"{len(U)}")
     return V, F, U

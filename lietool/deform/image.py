@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lietool.lie import checks
 from lietool.mesh import solve as systems
 from lietool.mesh import topology
 
@@ -260,7 +261,10 @@ def _only(mask: Mask, field: Field) -> Field:
 
 
 def _mask(mask: ArrayLike) -> Mask:
-    a = np.asarray(mask)
+    try:
+        a = np.asarray(mask)
+    except ValueError:
+        topology.fail("image.prepare", "mask", "true or false, of shape (h, w)", "a ragged list")
     if a.dtype.kind != "b" or a.ndim != 2:
         topology.fail(
             "image.prepare", "mask", "true or false, of shape (h, w)", f"{a.dtype} of shape {a.shape}"
@@ -278,10 +282,11 @@ def _numbers(where: str, name: str, a: ArrayLike) -> Array:
         topology.fail(where, name, "an array of numbers", "a ragged list")
     if x.dtype.kind not in "fiu" or x.ndim not in (2, 3):
         topology.fail(where, name, "numbers of shape (h, w) or (h, w, c)", f"{x.dtype} of shape {x.shape}")
-    bad = ~np.isfinite(x)
+    bad = ~(np.abs(x) <= checks.LARGEST)
     if bad.any():
         index = tuple(int(i) for i in np.argwhere(bad)[0])
-        topology.fail(where, name, "finite", f"{x[index]} at index {index}")
+        limit = f"at most {checks.LARGEST:.0e} in size" if np.isfinite(x[index]) else "finite"
+        topology.fail(where, name, limit, f"{x[index]} at index {index}")
     return x.astype(np.float64)
 
 

@@ -138,7 +138,7 @@ def prepare(
         is not finite.
     """
     where = "poisson.prepare"
-    V, F = laplacian.checked(where, V, F)
+    V, F = laplacian.checked(where, distortion.bounded(where, "V", V), F)
     sets = [_vertices(where, "pins", pins, len(V))]
     if not len(handles):
         topology.fail(where, "handles", "at least one set of vertices", "none")
@@ -256,7 +256,10 @@ def _right(prepared: Prepared, guide: Array) -> Array:
 
 
 def _vertices(where: str, name: str, chosen: ArrayLike, count: int) -> Index:
-    a = np.asarray(chosen)
+    try:
+        a = np.asarray(chosen)
+    except ValueError:
+        topology.fail(where, name, "whole numbers of shape (k,)", "a ragged list")
     if a.dtype.kind == "b" and a.shape == (count,):
         return np.flatnonzero(a)
     if a.ndim != 1 or (a.size and a.dtype.kind not in "iu"):

@@ -27,6 +27,12 @@ Index = NDArray[np.intp]
 FAR = 0.5 * np.pi
 """A step of the rotation vector that is longer, in radians, may be a continuation of the wrong branch."""
 
+CLOSE = 1e-9
+"""Keys nearer to each other in time, as a part of the whole, count as one too many."""
+
+FARTHEST = 1e100
+"""Of times; and their steps are at least its inverse."""
+
 _NEAR = {"phi_so": affine.psi_so_near, "phi_se": affine.psi_se_near}
 """The ways whose first three parameters are a rotation vector, and how to find the nearest."""
 
@@ -99,13 +105,15 @@ def principal(
     t = checks.array(where, "times", np.arange(len(a)) if times is None else times, ())
     if t.shape != (len(a),):
         checks.fail(where, "times", f"an array of shape ({len(a)},)", f"shape {t.shape}", None)
-    if not np.all(np.diff(t) > 0.0):
-        k = int(np.argmin(np.diff(t) > 0.0)) + 1
-        checks.fail(where, "times", "increasing", f"{t[k]:g} after {t[k - 1]:g}", (k,))
-    det = np.linalg.det(a[:, :3, :3])
-    if not np.all(det > 0.0):
-        index = checks.first(~(det > 0.0))
-        checks.fail(where, "A", "transformations with det > 0", f"det = {det[index]:.3g}", index)
+    # Of steps that differ more, and of spans beyond these, splines are rounding.
+    enough = np.diff(t) > max(CLOSE * (t[-1] - t[0]), 1.0 / FARTHEST)
+    if not enough.all():
+        k = int(np.argmin(enough)) + 1
+        got = f"{t[k]:g} after {t[k - 1]:g}"
+        checks.fail(where, "times", f"increasing, by more than {CLOSE:g} of the whole", got, (k,))
+    if t[-1] - t[0] > FARTHEST:
+        checks.fail(where, "times", f"within {FARTHEST:g}", f"{t[0]:g} to {t[-1]:g}", None)
+    _oriented(where, a)
     c = checks.array(where, "centre", centre, (3,))
     if c.shape != (3,):
         checks.fail(where, "centre", "an array of shape (3,)", f"shape {c.shape}", None)
@@ -209,6 +217,17 @@ def _nearest(way: ways.Way, A: Array, x: Array, k: int) -> Array:
         ) from error
 
 
+def _oriented(where: str, A: Array) -> None:
+    """Refuse det <= 0, for `linear` as for the others: its path is to be compared with theirs."""
+    L = A[:, :3, :3]
+    size = np.max(np.abs(L), axis=(1, 2))
+    good = (size > 0.0) & (np.linalg.det(L / np.where(size > 0.0, size, 1.0)[:, None, None]) > 0.0)
+    if not good.all():
+        index = checks.first(~good)
+        got = f"det = {np.linalg.det(L[index]):.3g}"
+        checks.fail(where, "A", "transformations with det > 0", got, index)
+
+
 def _shorter(params: Array, before: Array, count: int) -> Array:
     """Return the parameters with that quaternion of the two which is nearer to the one before."""
     one = np.eye(count)[0]
@@ -222,8 +241,8 @@ def _stated(keys: Keys, near: Mapping[int, ArrayLike]) -> dict[int, Array]:
         _refuse(where, f"none, for {keys.way.name} has no rotation vectors", f"{len(near)}")
     stated = {}
     for k, x in near.items():
-        if not 0 <= k < len(keys.times):
-            _refuse(where, f"of keys 0 to {len(keys.times) - 1}", f"one of {k}")
+        if k not in range(len(keys.times)):
+            _refuse(where, f"of keys 0 to {len(keys.times) - 1}", f"one of {k!r}")
         stated[k] = checks.array(where, "near", x, (3,))
         if stated[k].shape != (3,):
             _refuse(where, "vectors (3,)", f"shape {stated[k].shape}")

@@ -113,7 +113,9 @@ def test_bending_and_twisting_flip_nothing():
     [
         ({"deformed": V[:-1]}, r"deformed must be 6 vertices, as many as at rest; got 5"),
         ({"deformed": np.where(V == 2.0, np.nan, V)}, r"deformed must be finite; got .* vertex 1"),
-        ({"rest": V * [1.0, 0.0, 0.0]}, r"F must be triangles with an area; got area 0 in faces 0, 1, 2"),
+        ({"rest": V * [1.0, 0.0, 0.0]}, r"F must be triangles with an area; got area 0 in faces? 0, 1, 2"),
+        ({"deformed": V * 1e80}, r"deformed must be at most 1e\+70 in size; got 3e\+80"),
+        ({"rest": V * 1e80}, r"rest must be at most 1e\+70 in size"),
         ({"F": F + 2}, r"F must be indices of the 6 vertices"),
         ({"F": F[:0]}, r"F must be at least one triangle"),
     ],

@@ -148,6 +148,8 @@ GOOD = pictures(8)[0]
         (lambda: image.gradient(np.zeros(4)), "image must be numbers of shape"),
         (lambda: image.gradient(np.full((2, 2), np.nan)), r"image must be finite; got nan at index \(0, 0\)"),
         (lambda: image.gradient([[1, 2], [3]]), "image must be an array of numbers"),
+        (lambda: image.gradient([[1e200]]), r"image must be at most 1e\+150 in size"),
+        (lambda: image.prepare([[True], [True, False]]), "mask must be true or false, .* got a ragged list"),
         (lambda: image.gradient("abc"), "image must be numbers of shape"),
         (lambda: image.divergence(np.zeros((3, 3)), np.zeros((3, 3))), "field must be of shapes"),
         (lambda: image.solve(image.prepare(MASKS["disc"]), GOOD[1:], image.gradient(GOOD)), "target must be"),

@@ -247,6 +247,8 @@ def bad(**changes: object) -> dict[str, object]:
         ),
         ({"weights": np.full((104, 1), np.nan)}, "weights must be finite; got nan"),
         ({"V": np.where(V > 0.55, np.inf, V)}, "V must be finite; got"),
+        ({"V": V * 1e100}, r"V must be at most 1e\+70 in size"),
+        ({"pins": [[1], [2, 3]]}, "pins must be whole numbers .* got a ragged list"),
         ({"V": V[:, :2]}, r"V must be an array of shape \(k, 3\)"),
         (
             {"V": np.where(np.arange(104)[:, None] == 20, V[21], V)},

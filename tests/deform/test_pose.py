@@ -226,8 +226,11 @@ NO_LOG = np.stack([np.eye(4), np.diag([-1.0, -2.0, 1.0, 1.0]), np.eye(4), np.dia
         ),
         (
             lambda: pose.principal(ways.PHI_SO, GOOD, [0, 1, 2, 2, 3]),
-            r"times must be increasing; got 2 after 2",
+            r"times must be increasing, .*; got 2 after 2",
         ),
+        (lambda: pose.principal(ways.PHI_SO, GOOD, np.arange(5) * 1e-200), r"times must be increasing, .*"),
+        (lambda: pose.principal(ways.PHI_SO, GOOD, np.arange(5) * 1e120), r"times must be within 1e\+100"),
+        (lambda: pose.followed(ways.PHI_SO, GOOD, near={0.5: [1, 0, 0]}), "near must be of keys 0 to 4"),
         (lambda: pose.principal(ways.PHI_SO, GOOD, [0, 1]), r"times must be an array of shape \(5,\)"),
         (lambda: pose.principal(ways.PHI_SO, GOOD, [0, 1, np.nan, 3, 4]), "times must be finite"),
         (lambda: pose.principal(ways.PHI_SO, GOOD, None, [0, 0]), "centre must be an array"),
