@@ -169,7 +169,8 @@ def pose(
         If the policy refuses a probe, or turns are given to another way than
         phi_so, are not whole, or go about another axis than the probe's rotation.
     """
-    oriented = _oriented(motions(prepared, current), way, policy)
+    now = _frames("probe.pose", "current", current, len(prepared.rest_inverse))
+    oriented = _oriented(motions(prepared, now), way, policy)
     B = oriented.A
     if turns is None:
         return move.encode(way, B), oriented.replaced
