@@ -19,8 +19,13 @@ from lietool.parameter import Parameter, nearest
 # The options that every figure command has; no parameter may be called so.
 RESERVED = ("output", "plate", "theme", "size", "dpi", "seconds", "fps", "draft", "json", "backend", "help")
 
+# What `Figure.mesh` is where every drawing has one.
+EVERY = ("",)
+
 # Of an animation: one that is longer would never end, or has frames longer than a GIF can say.
 _MOST_FRAMES, _LONGEST = 1000, 600.0
+# Of files without an option: nobody remembers the order of more.
+_MOST_WORDS = 3
 
 
 class FigureError(ValueError):
@@ -63,10 +68,14 @@ class Time:
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a figure returns: a `lietool.render.scene.Picture`, and the numbers that it shows."""
+    """What a figure returns: a `lietool.render.scene.Picture`, and the numbers that it shows.
+
+    Where it shows a mesh that somebody may want to have, that too, as a `lietool.mesh.surface.Mesh`.
+    """
 
     picture: Any
     numbers: Mapping[str, object]
+    mesh: Any = None
 
 
 @dataclass(frozen=True)
@@ -82,6 +91,7 @@ class Figure:
     chapter: str
     summary: str
     help: str
+    mesh: tuple[str, ...] = ()
 
     def draw(self, **params: object) -> Drawing:
         """Draw the figure; parameters that are not given have their defaults.
@@ -91,12 +101,24 @@ class Figure:
         ValueError
             If a parameter is unknown, of another type, not finite or out of range.
         FigureError
-            If the function returns anything but a `Drawing`.
+            If the function returns anything but a `Drawing`, or one with a mesh that is not declared, or
+            without one that is.
         """
-        drawing = self.function(**self.check(params))
+        values = self.check(params)
+        drawing = self.function(**values)
         if not isinstance(drawing, Drawing):
             raise FigureError(f"{self.file}: {self.name} must return a Drawing; got {type(drawing).__name__}")
+        if (drawing.mesh is not None) != self.shows_mesh(values):
+            got = "none" if drawing.mesh is None else "one"
+            raise FigureError(
+                f"{self.file}: {self.name} must return a Drawing with a mesh just where @figure(mesh=...) "
+                f"says so; got {got}. Correct one of them"
+            )
         return drawing
+
+    def shows_mesh(self, values: Mapping[str, object]) -> bool:
+        """Return whether a drawing of all these parameters has a mesh."""
+        return bool(self.mesh) and (self.mesh == EVERY or values[self.mesh[0]] in self.mesh[1:])
 
     def check(self, params: Mapping[str, object]) -> dict[str, Any]:
         """Return all parameters: those given, in their own types, and the defaults of the others.
@@ -124,6 +146,12 @@ class Figure:
         named = set(given)
         return [p for p in self.parameters if p.name in named and p.idle(values)]
 
+    @property
+    def positional(self) -> tuple[Parameter, ...]:
+        """The parameters that need no option on the command line, in their order there."""
+        found = [p for p in self.parameters if p.param.positional]
+        return tuple(sorted(found, key=lambda p: p.param.positional))
+
     def plate_params(self, plate_id: str) -> dict[str, Any]:
         """Return the parameters of a plate: the defaults, and over them its own.
 
@@ -139,9 +167,11 @@ class Figure:
 
 
 def figure(
-    *, plates: Mapping[str, Plate], time: Time | None = None
+    *, plates: Mapping[str, Plate], time: Time | None = None, mesh: bool | tuple[str, ...] = False
 ) -> Callable[[Callable[..., Drawing]], Figure]:
     """Make a figure of the function below: its signature lists the parameters, its docstring is the help.
+
+    `mesh` says that its drawings have one; or with which choices of a parameter: ``("view", "whole")``.
 
     Raises
     ------
@@ -152,7 +182,8 @@ def figure(
     def decorate(function: Callable[..., Drawing]) -> Figure:
         file = Path(function.__code__.co_filename)
         try:
-            return _checked(function, dict(plates), time, file)
+            meshes = mesh if isinstance(mesh, tuple) else EVERY if mesh else ()
+            return _checked(function, dict(plates), time, file, meshes)
         except ValueError as error:
             raise FigureError(f"{file}: {error}") from None
 
@@ -160,7 +191,11 @@ def figure(
 
 
 def _checked(
-    function: Callable[..., Drawing], plates: dict[str, Plate], time: Time | None, file: Path
+    function: Callable[..., Drawing],
+    plates: dict[str, Plate],
+    time: Time | None,
+    file: Path,
+    mesh: tuple[str, ...],
 ) -> Figure:
     if function.__name__ != file.stem:
         raise ValueError(
@@ -179,8 +214,9 @@ def _checked(
     chapter = "" if file.parent.name == "figures" else file.parent.name
     name = function.__name__.replace("_", "-")
     read = tuple(_read_signature(function))
-    checked = Figure(name, function, read, plates, time, file, chapter, summary, help_text)
+    checked = Figure(name, function, read, plates, time, file, chapter, summary, help_text, mesh)
     _check_only(checked)
+    _check_positional(checked)
     _check_plates(checked)
     if time:
         _check_time(time, read)
@@ -202,15 +238,20 @@ def _read_signature(function: Callable[..., Drawing]) -> Iterable[Parameter]:
 
 def _check_only(figure: Figure) -> None:
     choices = {parameter.name: parameter.param.choices for parameter in figure.parameters}
-    for parameter in figure.parameters:
-        if not parameter.param.only:
-            continue
-        name, *some = parameter.param.only
-        if not some or not set(some) <= set(choices.get(name, ())):
-            raise ValueError(
-                f"parameter {parameter.name}: only must be another parameter and some of its choices; "
-                f"got {parameter.param.only}. Correct it"
-            )
+    said = {f"parameter {p.name}: only must be another": p.param.only for p in figure.parameters}
+    if figure.mesh != EVERY:
+        said["mesh must be True, or a"] = figure.mesh
+    for what, only in said.items():
+        if only and (len(only) < 2 or not set(only[1:]) <= set(choices.get(only[0], ()))):
+            raise ValueError(f"{what} parameter and some of its choices; got {only}. Correct it")
+
+
+def _check_positional(figure: Figure) -> None:
+    places = [parameter.param.positional for parameter in figure.positional]
+    if places != list(range(1, len(places) + 1)) or len(places) > _MOST_WORDS:
+        names = ", ".join(parameter.name for parameter in figure.positional)
+        must = f"positional must count {names} from 1 to {_MOST_WORDS} at most"
+        raise ValueError(f"{must}; got {places}. Correct it")
 
 
 def _check_plates(figure: Figure) -> None:

@@ -24,7 +24,8 @@ class Param:
 
     Components of a vector that `help` names, as in ``"start (w, x, y, z)"``, are named in messages too.
     `only` names another parameter and those of its choices with which this one has a part in the picture:
-    ``only=("view", "rings")``.
+    ``only=("view", "rings")``.  A file may also be given without its option: ``positional=1`` is the first
+    word on the command line that belongs to no option.
     """
 
     help: str
@@ -33,6 +34,7 @@ class Param:
     high: float | None = None
     choices: tuple[str, ...] = ()
     only: tuple[str, ...] = ()
+    positional: int = 0
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,11 @@ class Parameter:
             return ""
         name, *choices = self.param.only
         return f"with --{name.replace('_', '-')} {' or '.join(choices)}"
+
+    @property
+    def word(self) -> str:
+        """What stands for it on the command line where it needs no option: ``"SOURCE"``."""
+        return self.name.upper().replace("_", "-")
 
     def idle(self, values: Mapping[str, object]) -> bool:
         """Return whether it has no part in the picture, given all parameters."""
@@ -162,7 +169,8 @@ class Parameter:
                 return value
             case "bool" if isinstance(value, bool):
                 return value
-            case "path" if isinstance(value, str | os.PathLike) and Path(value).is_file():
+            # Unlike pathlib's, it says of a name that is too long, too, that there is no such file.
+            case "path" if isinstance(value, str | os.PathLike) and os.path.isfile(value):  # noqa: PTH113
                 return Path(value)
         return None
 
@@ -245,6 +253,8 @@ def _refuse_contradictions(parameter: Parameter) -> None:
         )
     if not numeric and (param.unit or param.low is not None or param.high is not None):
         raise ValueError("has a unit or a range but is no number. Leave them out")
+    if param.positional and parameter.kind != "path":
+        raise ValueError("is positional but no file. Leave that out: what is no file is given by its option")
     if param.choices and parameter.kind != "str":
         raise ValueError("has choices but is no text. Leave them out")
     if param.low is not None and param.high is not None and param.low > param.high:

@@ -156,6 +156,30 @@ def test_a_malformed_vector_is_refused(project: Path, text: str) -> None:
         (_tiny(_PART.format('("view",)')), "parameter x: only must be another parameter and some of its"),
         (_tiny(_PART.format('("view", "c")')), "choices; got ('view', 'c'). Correct it"),
         (_tiny(_PART.format('("x", "a")')), "got ('x', 'a')"),
+        (
+            _tiny('x: Annotated[float, Param("x", positional=1)] = 1.0'),
+            "parameter x is positional but no file. Leave that out",
+        ),
+        *(
+            (
+                _tiny(
+                    f'x: Annotated[Path | None, Param("x", positional={places[0]})] = None, '
+                    f'y: Annotated[Path | None, Param("y", positional={places[1]})] = None'
+                ),
+                f"positional must count x, y from 1 to 3 at most; got {sorted(places)}. Correct it",
+            )
+            for places in ((1, 1), (2, 3), (1, 3))
+        ),
+        *(
+            (
+                _tiny(
+                    'view: Annotated[Literal["a", "b"], Param("v")] = "a"',
+                    f'plates={{"A": Plate("T", (), "C.")}}, mesh={mesh}',
+                ),
+                f"mesh must be True, or a parameter and some of its choices; got {mesh}. Correct it",
+            )
+            for mesh in ("('view',)", "('view', 'c')", "('x', 'a')")
+        ),
         (_tiny("a: float = 1.0"), "parameter a must be annotated"),
         (_tiny("a=1.0"), "parameter a must be annotated"),
         (_tiny('a: Annotated[float, Param("a")]'), "parameter a has no default"),
@@ -247,6 +271,22 @@ def test_a_bad_file_is_refused_by_name(project: Path, text: str, message: str) -
     assert message in str(error.value)
     assert str(error.value).startswith(str(file))
     assert "\n" not in str(error.value)
+
+
+def test_a_mesh_is_returned_just_where_it_is_declared(project: Path) -> None:
+    view = 'view: Annotated[Literal["a", "b"], Param("v")] = "a"'
+    for mesh, fine in ((("view", "b"), {"b"}), (True, {"a", "b"}), (False, set())):
+        text = _tiny(view, f'plates={{"A": Plate("T", (), "C.")}}, mesh={mesh}')
+        _write(project, "ch9/tiny.py", text.replace("{}", "{}, 3 if view == 'b' else None"))
+        sys.modules.pop("lietool_project.ch9.tiny", None)
+        tiny = figures.load("tiny")
+        assert {name for name in "ab" if tiny.shows_mesh({"view": name})} == fine
+        for name in "ab":
+            if (name == "b") == (name in fine):
+                tiny.draw(view=name)
+            else:
+                with pytest.raises(figures.FigureError, match="just where @figure"):
+                    tiny.draw(view=name)
 
 
 def test_a_tolerance_with_a_reason_is_accepted(project: Path) -> None:

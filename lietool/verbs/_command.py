@@ -1,17 +1,20 @@
 """The command of a figure: its parameters and plates as options, help and completion."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import click
 from click.shell_completion import CompletionItem
 
 from lietool.figure import Figure, Parameter, nearest, plates, quoted
-from lietool.verbs import _film, _picture, _size
+from lietool.verbs import _film, _mesh, _picture, _size
 
 # Repeated here so that completion need not load OpenGL; a test compares them with `render`.
 BACKENDS = ("osmesa", "egl", "gpu", "system")
+# The name of all words without an option, which no parameter has.
+_WORDS = "_words"
+_PLACES = ("", "first", "second", "third")
 _METAVARS = {"float": "NUMBER", "int": "N", "str": "TEXT", "path": "FILE"}
 
 
@@ -28,7 +31,7 @@ class _Command(click.Command):
         super().__init__(
             figure.name,
             callback=self._run,
-            params=[*map(_option, figure.parameters), *_common(figure)],
+            params=[*_words(figure), *map(_option, figure.parameters), *_common(figure)],
             help=figure.help,
             short_help=figure.summary,
         )
@@ -48,8 +51,10 @@ class _Command(click.Command):
         fps: float | None = None,
         **given: object,
     ) -> None:
+        words = given.pop(_WORDS, ())
         # An option that is not given is None, for it has no default of its own.
         explicit = {name: value for name, value in given.items() if value is not None}
+        explicit |= _placed(self.figure, words, explicit)
         params = (self.figure.plate_params(plate) if plate else {}) | explicit
         for idle in self.figure.idle(self.figure.check(params), explicit):
             raise click.UsageError(
@@ -69,6 +74,35 @@ class _Command(click.Command):
             if rows := _described(self.figure) if title == "Plates" else sections[title]:
                 with formatter.section(title):
                     formatter.write_dl(rows)
+
+
+def _words(figure: Figure) -> Iterator[click.Argument]:
+    """The words that need no option, if the figure takes any: files."""
+    if figure.positional:
+        names = "".join(f" [{parameter.word}" for parameter in figure.positional).strip()
+        yield click.Argument(
+            [_WORDS], nargs=-1, type=_Word(), metavar=names + "]" * len(figure.positional), required=False
+        )
+
+
+def _placed(figure: Figure, words: tuple[str, ...], given: Mapping[str, object]) -> dict[str, object]:
+    """The parameters that words without an option give."""
+    places, found = figure.positional, {}
+    if len(words) > len(places):
+        most, more = " and ".join(parameter.word for parameter in places), words[len(places)]
+        raise click.UsageError(f"only {most} can be given without an option; got {quoted(more)} too")
+    for parameter, text in zip(places, words, strict=False):
+        if parameter.name in given:
+            raise click.UsageError(
+                f"{parameter.word} is given twice: {quoted(text)}, and "
+                f"{parameter.option} {parameter.text(given[parameter.name])}. Leave out one of them"
+            )
+        try:
+            found[parameter.name] = parameter.parse(text)
+        except ValueError as error:
+            hint = f". Write --plate {text}" if text in plates() else ""
+            raise click.UsageError(f"{parameter.word} {error}{hint}") from None
+    return found
 
 
 def _described(figure: Figure) -> list[tuple[str, str]]:
@@ -104,6 +138,17 @@ class _Value(click.ParamType):
         if self.parameter.kind == "path":
             return [CompletionItem(incomplete, type="file")]
         return [CompletionItem(item) for item in self.parameter.param.choices if item.startswith(incomplete)]
+
+
+class _Word(click.ParamType):
+    """A file that needs no option; what it must be is asked when its place is known."""
+
+    name = "file"
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        return [CompletionItem(incomplete, type="file")]
 
 
 class _PlateId(click.ParamType):
@@ -175,6 +220,8 @@ SIZE, DPI, THEME = _Read(_size.parse), _Read(_size.dpi), click.Choice(_picture.T
 def _option(parameter: Parameter) -> click.Option:
     param, default = parameter.param, parameter.default
     facts = [fact for fact in (parameter.where, parameter.range) if fact]
+    if param.positional:
+        facts.append(f"or the {_PLACES[param.positional]} FILE without an option")
     if parameter.kind == "bool":
         on, off = parameter.option, f"--no-{parameter.option[2:]}"
         about = f"{param.help} [{'; '.join([*facts, f'default {on if default else off}'])}]"
@@ -193,7 +240,12 @@ def _option(parameter: Parameter) -> click.Option:
 
 
 def _common(figure: Figure) -> Iterator[click.Option]:
-    about = f"File to write; it ends in {_picture.listed(_picture.ENDINGS)}. [default ./{figure.name}.png]"
+    about = f"File to write; it ends in {_picture.listed(_picture.ENDINGS)}"
+    if figure.mesh:
+        about += f", or to hold the mesh shown, in {_picture.listed(_mesh.ENDINGS)}"
+    if figure.mesh and figure.time:
+        about += f"; frame-%03d.obj makes one for each moment of --{figure.time.param}"
+    about += f". [default ./{figure.name}.png]"
     yield click.Option(["-o", "--output"], type=click.Path(), metavar="FILE", help=about)
     yield click.Option(
         ["--plate"], type=_PlateId(figure), metavar="ID", help="Start from this plate's parameters."

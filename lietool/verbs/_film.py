@@ -65,7 +65,7 @@ def paced(time: Time, ending: str, pace: Pace) -> Time:
 def rate(time: Time, ending: str) -> float:
     """Return how many pictures a second a film has that nobody asked for more or fewer of."""
     own = time.frames / time.seconds
-    return own if ending == ".gif" else max(own, _SMOOTH)
+    return max(own, _SMOOTH) if ending in (".apng", ".mp4") else own
 
 
 def sweep(time: Time) -> list[float]:

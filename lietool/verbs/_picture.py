@@ -12,7 +12,7 @@ import click
 import lietool
 from lietool import atomic, paths
 from lietool.figure import Drawing, Figure, Time, project
-from lietool.verbs import _film, _size
+from lietool.verbs import _film, _mesh, _size
 from lietool.verbs._film import sweep as sweep
 
 if TYPE_CHECKING:
@@ -68,6 +68,13 @@ class Quality:
         return theme.THEMES[self.theme]
 
     @property
+    def given(self) -> list[str]:
+        """The options that were given."""
+        plain = Quality()
+        names = ("size", "dpi", "theme", "draft", "backend")
+        return [f"--{name}" for name in names if getattr(self, name) != getattr(plain, name)]
+
+    @property
     def density(self) -> float | None:
         """Dots per inch of a picture of a given length; None where it has none."""
         return self.size.dpi if self.size and self.size.is_length else None
@@ -121,12 +128,15 @@ def make(
         Parameters that were given explicitly: a film must not sweep them.
     """
     values = figure.check(params)
-    target = (
-        None if numbers and output is None else _target(f"{figure.name}.png" if output is None else output)
-    )
+    target = None
+    if output is not None or not numbers:
+        target = _target(f"{figure.name}.png" if output is None else output, figure)
     ending = target.suffix.lower() if target else ""
-    moving = ending in _film.ENDINGS
-    if target:
+    solid, row = ending in _mesh.ENDINGS, target is not None and _mesh.numbered(target)
+    moving = ending in _film.ENDINGS or row
+    if solid:
+        _mesh.check(figure, values, ending, quality)
+    elif target:
         quality.check(ending)
     if pace != _film.ITS_OWN and not moving:
         raise click.UsageError(
@@ -135,21 +145,32 @@ def make(
     time = _film.paced(_time(figure, values, ending, swept), ending, pace) if moving else None
     # A film draws frames of its own.
     drawing = figure.draw(**values) if numbers or not time else None
-    if target and time:
-        _write(target, _moving(figure, values, time, ending, quality))
+    written: dict[Path, bytes] = {}
+    if target and time and row:
+        written = _mesh.moving(figure, values, time, target)
+    elif target and time:
+        written[target] = _moving(figure, values, time, ending, quality)
+    elif target and drawing and solid:
+        written[target] = _mesh.still(drawing.mesh, ending)
     elif target and drawing:
-        _write(target, _still(figure, values, drawing, ending, quality))
-    if target:
-        click.echo(target, err=numbers)
+        written[target] = _still(figure, values, drawing, ending, quality)
+    for path, data in written.items():
+        _write(path, data)
+        click.echo(path, err=numbers)
     if numbers and drawing:
         from lietool.golden import numbers as numbers_
 
         click.echo(numbers_.dumps(drawing.numbers), nl=False)
 
 
-def _target(output: str) -> Path:
+def endings(figure: Figure) -> tuple[str, ...]:
+    """Return the endings of all files that a figure can be written to."""
+    return (*ENDINGS, *_mesh.ENDINGS) if figure.mesh else ENDINGS
+
+
+def _target(output: str, figure: Figure) -> Path:
     """The file to write, refused before any work is done where that is possible."""
-    path = Path(output)
+    path, known = Path(output), listed(endings(figure))
     try:
         # A pathlib path forgets the slash at the end, by which somebody means a folder.
         is_folder = path.is_dir() or output.endswith(("/", os.sep))
@@ -157,12 +178,12 @@ def _target(output: str) -> Path:
         raise click.UsageError(f"--output {output}: {error.strerror}. Choose another name") from None
     if is_folder:
         raise click.UsageError(
-            f"--output {output or repr('')} is a folder. Write a file name, ending in {listed(ENDINGS)}"
+            f"--output {output or repr('')} is a folder. Write a file name, ending in {known}"
         )
     if path.exists() and not path.is_file():
         raise click.UsageError(f"--output {output} is a device or a pipe. Write the name of a file")
-    if path.suffix.lower() not in ENDINGS:
-        raise click.UsageError(f"--output must end in {listed(ENDINGS)}; got {output!r}")
+    if path.suffix.lower() not in (*ENDINGS, *_mesh.ENDINGS):
+        raise click.UsageError(f"--output must end in {known}; got {output!r}")
     if not path.parent.is_dir():
         raise click.UsageError(f"--output {output}: there is no folder {path.parent}. Make it first")
     if not os.access(path.parent, os.W_OK | os.X_OK):

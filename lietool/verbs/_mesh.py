@@ -1,0 +1,64 @@
+"""The mesh that a figure shows, to a file or, over the figure's time, to a row of numbered files."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from lietool.figure import Figure, Time
+from lietool.verbs import _film
+
+if TYPE_CHECKING:
+    from lietool.verbs._picture import Quality
+
+# Repeated here so that completion need not load numpy; a test compares them with `mesh`.
+ENDINGS = (".obj", ".off", ".ply", ".stl", ".glb")
+_NUMBER = re.compile(r"%(0[1-9])?d")
+
+
+def check(figure: Figure, values: Mapping[str, object], ending: str, quality: "Quality") -> None:
+    """Refuse to write a mesh where the figure shows none, or where how to draw is asked for.
+
+    Raises
+    ------
+    click.UsageError
+        It names the choices with which the figure shows a mesh, if there are any.
+    """
+    if not figure.mesh:
+        raise click.UsageError(f"{figure.name} shows no mesh, which a {ending} holds. Write a .png")
+    if not figure.shows_mesh(values):
+        name, *choices = figure.mesh
+        option = "--" + name.replace("_", "-")
+        raise click.UsageError(
+            f"{figure.name} shows the mesh of one moment, which a {ending} holds, only with "
+            f"{option} {' or '.join(choices)}. Write that, or a .png"
+        )
+    if given := quality.given:
+        says, them = ("say", "them") if len(given) > 1 else ("says", "it")
+        raise click.UsageError(
+            f"{' and '.join(given)} {says} how to draw, and a {ending} is no picture. Leave {them} out"
+        )
+
+
+def numbered(path: Path) -> bool:
+    """Return whether a file name asks for a row of files: ``frame-%03d.obj``."""
+    return path.suffix.lower() in ENDINGS and len(_NUMBER.findall(path.name)) == 1
+
+
+def still(mesh: Any, ending: str) -> bytes:
+    """Return the contents of a file with a mesh."""
+    from lietool.mesh import surface_io
+
+    return surface_io.encode(mesh, ending)
+
+
+def moving(figure: Figure, values: Mapping[str, Any], time: Time, path: Path) -> dict[Path, bytes]:
+    """Return the files of a row and their contents: each moment of a film once, up to its far end."""
+    width = (_NUMBER.findall(path.name) or [""])[0] or "d"
+    found = {}
+    for number, t in enumerate(dict.fromkeys(_film.sweep(time))):
+        file = path.with_name(_NUMBER.sub(f"{number:{width}}", path.name))
+        found[file] = still(figure.draw(**values | {time.param: t}).mesh, path.suffix.lower())
+    return found
