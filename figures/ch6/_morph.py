@@ -25,6 +25,8 @@ _ENERGIES = {
 MOMENTS = 41
 # How high the barycentre is thrown, over the size of the shape.
 _THROW = 0.35
+# By so many degrees more a given direction turns, half way.
+_SWING = 40.0
 
 
 @dataclass(frozen=True)
@@ -50,12 +52,32 @@ class Choice:
 
 
 @dataclass(frozen=True, eq=False)
+class Line:
+    """Two vertices whose line has its direction given, and the vector along it over time."""
+
+    ends: tuple[int, int]
+    path: constraint.Path
+
+    def along(self, t: float) -> Array:
+        """The direction (2,) at a time."""
+        along = np.asarray(self.path(np.array([t])))[0]
+        return along / np.linalg.norm(along)
+
+    @property
+    def constraint(self) -> constraint.Direction:
+        """What it asks of the shape."""
+        quarter = np.array([[0.0, 1.0], [-1.0, 0.0]])
+        return constraint.Direction(*self.ends, lambda t: np.asarray(self.path(t)) @ quarter)
+
+
+@dataclass(frozen=True, eq=False)
 class Led:
-    """What constraints make of the shape: vertices on curves, an edge held, the barycentre on a curve."""
+    """What constraints make of the shape: vertices on curves, an edge or its line, the barycentre."""
 
     constraints: tuple[constraint.Constraint, ...]
     loci: tuple[tuple[int, constraint.Path], ...] = ()
     edge: tuple[int, int] | None = None
+    line: Line | None = None
     barycentre: constraint.Path | None = None
 
 
@@ -150,8 +172,12 @@ def _reversed(constraints: tuple[constraint.Constraint, ...]) -> tuple[constrain
     def backwards(path: constraint.Path) -> constraint.Path:
         return lambda t: path(1.0 - t)
 
-    paths = [c for c in constraints if not isinstance(c, constraint.Direction)]
-    return tuple(replace(c, path=backwards(c.path)) for c in paths)
+    return tuple(
+        replace(c, normal=backwards(c.normal))
+        if isinstance(c, constraint.Direction)
+        else replace(c, path=backwards(c.path))
+        for c in constraints
+    )
 
 
 def seed_triangle(pair: Shape, seed: float) -> int:
@@ -194,10 +220,14 @@ def _led(pair: Shape, choice: Choice, theta: Array, local: Callable[[Array], Arr
         loci = tuple((v, _beside(middle, turning, half)) for v, half in zip(ends, (0.5, -0.5), strict=True))
         return Led(tuple(constraint.Locus(*locus) for locus in loci), loci)
     center = constraint.line(P.mean(axis=0), Q.mean(axis=0))
-    if choice.constraint == "held":
+    if choice.constraint in ("held", "direction"):
         edge = tuple(pair.marks.get(f"inner {name}", pair.marks[tip]) for name, tip in _HELD)
         edge = edge[0], edge[1]
         center = _thrown(center, _THROW * float(np.ptp(P, axis=0).max()))
+        if choice.constraint == "direction":
+            vector = _turning(pair, replace(choice, winding=0), theta, *edge)
+            line = Line(edge, _swung(vector, np.deg2rad(_SWING)))
+            return Led((constraint.Barycentre(center), line.constraint), line=line, barycentre=center)
         held = constraint.Edge(*edge, _turning(pair, choice, theta, *edge))
         return Led((constraint.Barycentre(center), held), edge=edge, barycentre=center)
     if not choice.forgives:
@@ -222,6 +252,16 @@ def _turning(pair: Shape, choice: Choice, theta: Array, a: int, b: int) -> const
 
 def _beside(middle: constraint.Path, vector: constraint.Path, part: float) -> constraint.Path:
     return lambda t: np.asarray(middle(t)) + part * np.asarray(vector(t))
+
+
+def _swung(vector: constraint.Path, angle: float) -> constraint.Path:
+    """A vector turned by an angle besides, half way."""
+
+    def path(t: Array) -> Array:
+        v = np.asarray(vector(t)) @ [1.0, 1.0j] * np.exp(1.0j * angle * np.sin(np.pi * t))
+        return np.stack([v.real, v.imag], axis=-1)
+
+    return path
 
 
 def _thrown(line: constraint.Path, height: float) -> constraint.Path:

@@ -78,10 +78,25 @@ def torn(pair: Shape, corners: Array, place: Plane, t: float, said: str) -> scen
     return between(pair, t, middle, place, rf"local: $A_i(t)$, $t = {t:.2f}$", said)
 
 
-def stitched(pair: Shape, V: Array, flipped: Array, place: Plane, t: float, said: str) -> scene.Picture:
-    """Return the shape at time t."""
+def stitched(
+    pair: Shape, V: Array, flipped: Array, place: Plane, t: float, said: str, shown: list[scene.Record]
+) -> scene.Picture:
+    """Return the shape at time t, and what constraints there are."""
     middle = marks.drawn(place, pair, V, marks.color_at(t), flipped=flipped, eye=0.035 * place.scale)
-    return between(pair, t, middle, place, rf"global: $B_i(t)$, $t = {t:.2f}$", said)
+    return between(pair, t, middle + shown, place, rf"global: $B_i(t)$, $t = {t:.2f}$", said)
+
+
+def page(extents: Array) -> Plane:
+    """The place of a shape that has the page for itself."""
+    return fit(extents.reshape(-1, 2), (60.0, 60.0, 1080.0, 780.0))
+
+
+def alone(
+    pair: Shape, V: Array, flipped: Array, place: Plane, t: float, shown: list[scene.Record]
+) -> scene.Picture:
+    """Return nothing but the shape at time t, and what constraints there are."""
+    drawn = marks.drawn(place, pair, V, marks.color_at(t), flipped=flipped, eye=0.035 * place.scale)
+    return scene.Picture((scene.View((*drawn, *shown)),))
 
 
 def shown_maps(pair: Shape) -> Array:

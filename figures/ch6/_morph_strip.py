@@ -19,30 +19,40 @@ Array = np.ndarray
 _LEFT, _RIGHT = 40.0, 1160.0
 _FILLED = 0.93
 _COLORS = ((style.ROUTE_1, style.ROUTE_1_TEXT, None), (style.ROUTE_2, style.ROUTE_2_TEXT, (13.0, 8.0)))
+# Above the other two, the row that goes wrong.
+_THREE = ((style.WRONG, style.WRONG, (4.0, 7.0)), *_COLORS)
 # Of all triangles: so few can be overlooked.
 _FEW = 0.03
+# How far the line of a given direction reaches, over the size of the shape.
+_REACH = 0.62
 
 
 @dataclass(frozen=True)
 class Row:
-    """Where a row stands: base line of its title, lower and upper end of the shapes, line of the counts."""
+    """Where a row stands: base line of its title, lower and upper end of the shapes, line of the counts.
+
+    Its columns begin at `left`.
+    """
 
     title: float
     low: float
     high: float
     counts: float
+    left: float = _LEFT
 
 
 # Lines of text below the shapes, the room that a title takes, and what the axes need below and above.
 _LINE, _UNDER_TITLE, _AXES_BELOW, _AXES_ABOVE = 38.0, 34.0, 62.0, 66.0
 _TITLE, _LOWEST, _HIGHEST = 846.0, 116.0, 240.0
+# Of three rows: the upper end, where the columns begin beside the titles, and the height of a line of those.
+_TOP, _BESIDE, _TITLE_LINE = 880.0, 262.0, 33.0
 
 
 @dataclass(frozen=True, eq=False)
 class Strip:
-    """A way with its name and its frames at some times; with two directions to compare, or not."""
+    """A way with its name, in phrases, and its frames at some times; compared with the way back, or not."""
 
-    name: str
+    name: tuple[str, ...]
     way: _morph.Way
     frames: shape.Result
     both: bool = False
@@ -50,6 +60,62 @@ class Strip:
 
 def picture(strips: Sequence[Strip], t: float) -> scene.Picture:
     """Return the page; `t` is the moment that is marked in the plots."""
+    return _three(strips, t) if len(strips) > 2 else _few(strips, t)
+
+
+def _three(strips: Sequence[Strip], t: float) -> scene.Picture:
+    """Three rows have their titles at their left, and no line of counts."""
+    window = _window(strips)
+    columns = len(strips[0].frames.t)
+    wide, tall = window[1] - window[0], window[3] - window[2]
+    times = _LOWEST + _AXES_BELOW + _AXES_ABOVE + 14.0
+    pitch = (_TOP - times - _LINE) / len(strips)
+    scale = min(_FILLED * (_RIGHT - _BESIDE) / columns / wide, 0.88 * pitch / tall)
+    records: list[scene.Record] = []
+    for k, strip in enumerate(strips):
+        middle = _TOP - (k + 0.5) * pitch
+        half = 0.5 * scale * tall
+        row = Row(middle, middle - half, middle + half, 0.0, _BESIDE)
+        records += _row(strip, row, scale, window, False)
+        records += _beside(strip, middle, _THREE[k][1])
+    records += _moments(strips, _BESIDE, times)
+    records += _plots(strips, t, _AXES_BELOW, _LOWEST, _THREE)
+    return scene.Picture((scene.View(tuple(records)),))
+
+
+def _beside(strip: Strip, middle: float, tone: str) -> list[scene.Record]:
+    """A row's title at its left: the energy, the input line by line, and how many triangles flip."""
+    count = int(strip.way.measured.flipped.sum(axis=1).max())
+    # What stands in brackets has a line of its own.
+    lines = [line for phrase in strip.name for line in phrase.replace(" $(", "\n$(").split("\n")]
+    lines.append(f"up to {count} flipped" if count else "none flipped")
+    top = middle + 0.5 * _TITLE_LINE * (len(lines) - 1)
+    records: list[scene.Record] = []
+    for k, line in enumerate(lines):
+        size = style.TITLE_TEXT if k == 0 else style.SMALL_TEXT
+        at = (_LEFT, top - k * _TITLE_LINE + (5.0 if k == 0 else 0.0), 0.0)
+        records.append(scene.Label(line, at, tone, size, anchor="lc", halo=False))
+    return records
+
+
+def _moments(strips: Sequence[Strip], left: float, height: float) -> list[scene.Record]:
+    """The times of the frames, below them."""
+    times = strips[0].frames.t
+    return [
+        scene.Label(
+            f"$t = {number(moment)}$",
+            (_center(k, len(times), left), height, 0.0),
+            style.INK,
+            style.SMALL_TEXT,
+            anchor="cn",
+            halo=False,
+        )
+        for k, moment in enumerate(times)
+    ]
+
+
+def _few(strips: Sequence[Strip], t: float) -> scene.Picture:
+    """One row or two have their titles above them."""
     window = _window(strips)
     columns = len(strips[0].frames.t)
     led = len(strips) == 1 and bool(strips[0].way.led.loci)
@@ -68,12 +134,9 @@ def picture(strips: Sequence[Strip], t: float) -> scene.Picture:
     low = _AXES_BELOW + gap
     records: list[scene.Record] = []
     for k, (strip, row) in enumerate(zip(strips, rows, strict=True)):
-        records += _title(strip.name, row.title, k if len(strips) > 1 else None)
+        records += _title(", ".join(strip.name), row.title, k if len(strips) > 1 else None)
         records += _row(strip, row, scale, window, counted)
-    for k, moment in enumerate(strips[0].frames.t):
-        at = (_center(k, columns), times, 0.0)
-        said = f"$t = {number(moment)}$"
-        records.append(scene.Label(said, at, style.INK, style.SMALL_TEXT, anchor="cn", halo=False))
+    records += _moments(strips, _LEFT, times)
     records += _plots(strips, t, low, high)
     return scene.Picture((scene.View(tuple(records)),))
 
@@ -92,8 +155,8 @@ def _rows(count: int, tall: float, gap: float, counted: bool) -> tuple[list[Row]
     return rows, times
 
 
-def _center(k: int, columns: int) -> float:
-    return _LEFT + (k + 0.5) * (_RIGHT - _LEFT) / columns
+def _center(k: int, columns: int, left: float) -> float:
+    return left + (k + 0.5) * (_RIGHT - left) / columns
 
 
 def _shift(way: _morph.Way, t: Array | float) -> Array:
@@ -130,33 +193,35 @@ def _row(
     fine = np.linspace(0.0, 1.0, 4 * _morph.MOMENTS)
     if way.led.barycentre is not None:
         path = np.asarray(way.led.barycentre(fine))
-        x = np.interp(fine, frames.t, [_center(k, columns) for k in range(columns)])
+        x = np.interp(fine, frames.t, [_center(k, columns, row.left) for k in range(columns)])
         across = x + scale * (path[:, 0] - _shift(way, fine))
         curve = np.stack([across, base + scale * path[:, 1], np.zeros_like(x)], axis=1)
         records.append(scene.Lines(curve, style.ROUTE_1, style.EDGE))
     for k, moment in enumerate(frames.t):
-        place = Plane((_center(k, columns) - scale * float(_shift(way, moment)), base), scale)
+        middle = _center(k, columns, row.left)
+        place = Plane((middle - scale * float(_shift(way, moment)), base), scale)
         V, turned = frames.vertices[k], frames.flipped[k]
         for _, path in way.led.loci:
             records.append(place.line(np.asarray(path(fine)), style.ROUTE_1, style.EDGE))
         records += marks.drawn(place, way.pair, V, marks.color_at(moment), flipped=turned, eye=0.07 * scale)
-        records += _held(place, way, V)
+        records += held(place, way, V, moment)
+        records += _rings(place, way, V, turned)
         if counted:
-            records += _counted(place, row.counts, _center(k, columns), way, V, turned)
+            records.append(_count(row.counts, middle, int(turned.sum())))
     return records
 
 
-def _counted(
-    place: Plane, height: float, middle: float, way: _morph.Way, V: Array, turned: Array
-) -> list[scene.Record]:
-    """How many triangles are turned over; where they are few, rings show where."""
-    count = int(turned.sum())
+def _count(height: float, middle: float, count: int) -> scene.Record:
+    """How many triangles are turned over."""
     tone = style.WRONG if count else style.MUTED
     at = (middle, height, 0.0)
-    records: list[scene.Record] = [
-        scene.Label(f"{count} flipped", at, tone, style.SMALL_TEXT, anchor="cn", halo=False)
-    ]
-    if 0 < count < _FEW * len(turned):
+    return scene.Label(f"{count} flipped", at, tone, style.SMALL_TEXT, anchor="cn", halo=False)
+
+
+def _rings(place: Plane, way: _morph.Way, V: Array, turned: Array) -> list[scene.Record]:
+    """Where few triangles are turned over, rings that show where."""
+    records: list[scene.Record] = []
+    if 0 < turned.sum() < _FEW * len(turned):
         faces = way.pair.faces[turned]
         _, part = topology.components(len(V), np.concatenate([faces[:, :2], faces[:, 1:]]))
         for k in np.unique(part[faces[:, 0]]):
@@ -167,10 +232,20 @@ def _counted(
     return records
 
 
-def _held(place: Plane, way: _morph.Way, V: Array) -> list[scene.Record]:
-    """What the constraints hold: the vertices on curves, the edge, the barycentre."""
+def held(place: Plane, way: _morph.Way, V: Array, t: float, curves: bool = False) -> list[scene.Record]:
+    """What the constraints hold: the vertices on curves, the edge or its line, the barycentre."""
     records: list[scene.Record] = []
+    paths = [path for _, path in way.led.loci] + [way.led.barycentre] * (way.led.barycentre is not None)
+    for path in paths if curves else ():
+        fine = np.asarray(path(np.linspace(0.0, 1.0, 4 * _morph.MOMENTS)))
+        records.append(place.line(fine, style.ROUTE_1, style.EDGE))
     dots = [V[v] for v, _ in way.led.loci]
+    if way.led.line is not None:
+        ends, along = V[list(way.led.line.ends)], way.led.line.along(t)
+        reach = _REACH * float(np.ptp(way.pair.source, axis=0).max())
+        line = ends.mean(axis=0) + np.multiply.outer([-reach, reach], along)
+        records.append(place.line(line, style.ROUTE_1, style.EDGE, dash=(9.0, 7.0)))
+        records.append(scene.Points(place.at(ends), style.ROUTE_1, 4.5, shaded=False))
     if way.led.edge is not None:
         records.append(place.line(V[list(way.led.edge)], style.ROUTE_1, 2.0 * style.EDGE))
     if way.led.barycentre is not None:
@@ -188,7 +263,9 @@ def _title(name: str, height: float, k: int | None) -> list[scene.Record]:
     return [scene.Label(name, at, tone, style.TITLE_TEXT, anchor="cn", halo=False)]
 
 
-def _plots(strips: Sequence[Strip], t: float, low: float, high: float) -> list[scene.Record]:
+def _plots(
+    strips: Sequence[Strip], t: float, low: float, high: float, colors: Sequence[tuple] = _COLORS
+) -> list[scene.Record]:
     x = strips[0].way.measured.t
     shown = [
         (r"least $\det B_i$", [s.way.measured.det.min(axis=1) for s in strips], True),
@@ -211,7 +288,7 @@ def _plots(strips: Sequence[Strip], t: float, low: float, high: float) -> list[s
         name = (axes.box[0] + 0.5 * axes.box[2], low, 0.0)
         records.append(scene.Label("$t$", name, style.INK, style.SMALL_TEXT, (0.0, -14.0), "ct", halo=False))
         records.append(axes.vertical(t, style.MUTED))
-        for curve, (tone, _, dash) in zip(curves, _COLORS, strict=False):
+        for curve, (tone, _, dash) in zip(curves, colors, strict=False):
             records.append(axes.curve(x, curve, tone, dash=dash))
     return records
 

@@ -8,12 +8,20 @@ from lietool.figure import Drawing, Param, Plate, Time, figure
 from . import _morph, _pairs
 from . import _morph_pages as pages
 
-_MOVING = ("stage", "local", "global", "frames")
-_WHOLE = ("stage", "global", "frames")
+_MOVING = ("stage", "local", "global", "morph", "frames")
+_WHOLE = ("stage", "global", "morph", "frames")
 
 
 @figure(
     plates={
+        "B6.4": Plate(
+            title="From local to global",
+            equations=("6.2",),
+            caption=(
+                "The same moment: of all whole shapes, the one whose maps B_i(t) are nearest to the A_i(t) "
+                "in the sense of E^F. The triangles are stitched together again."
+            ),
+        ),
         "B6.1": Plate(
             title="Two compatibly triangulated shapes",
             equations=("5.2",),
@@ -21,6 +29,7 @@ _WHOLE = ("stage", "global", "frames")
                 "The problem: a continuous way from the source to the target. Both have the same triangles, "
                 "and equal colours are corresponding places. A band of triangles is marked dark in both."
             ),
+            params={"stage": "ends"},
         ),
         "B6.2": Plate(
             title="Local affine maps",
@@ -41,15 +50,6 @@ _WHOLE = ("stage", "global", "frames")
                 "agree on where their common edge goes: the shape is torn apart."
             ),
             params={"stage": "local"},
-        ),
-        "B6.4": Plate(
-            title="From local to global",
-            equations=("6.2",),
-            caption=(
-                "The same moment: of all whole shapes, the one whose maps B_i(t) are nearest to the A_i(t) "
-                "in the sense of E^F. The triangles are stitched together again."
-            ),
-            params={"stage": "global"},
         ),
         "B6.5": Plate(
             title="E^F and constraints that wind the other way",
@@ -85,16 +85,16 @@ _WHOLE = ("stage", "global", "frames")
             title="E^R finds the rotations by itself; E^F needs consistent angles",
             equations=("6.2", "6.4", "6.5"),
             caption=(
-                "Above, E^R with the angles in (-180, 180] that broke the snake under E^F, and one edge of "
-                "the head held: it unrolls all the same, since E^R does not depend on the angles. Below, E^F "
-                "does as well once the angles are consistent over the mesh."
+                "Above, E^F with the angles in (-180, 180], which break the snake. In the middle, E^R with "
+                "the same angles, and one edge of the head held: it rolls up all the same, since E^R does "
+                "not depend on them. Below, E^F does as well with angles that are consistent over the mesh."
             ),
             params={
                 "example": "snake",
                 "stage": "frames",
                 "angles": "principal",
                 "energy": "similarity",
-                "beside": "frobenius",
+                "beside": "both-angles",
             },
         ),
         "G6.1": Plate(
@@ -165,23 +165,34 @@ _WHOLE = ("stage", "global", "frames")
             },
         ),
         "G6.5": Plate(
-            title="A somersault: the barycentre and an edge held",
-            equations=("6.4",),
+            title="An edge held, or its direction alone, and the barycentre on a curve",
+            equations=("6.2", "6.4"),
             caption=(
-                "The barycentre (dot) must follow the curve, and the vector between two vertices of the "
-                "trunk (thick line) turns forwards by a full turn more than the local maps say. E^R lets the "
-                "whole cat follow, and no triangle is turned over."
+                "Above, the vector between two vertices of the trunk (thick line) turns forwards by a full "
+                "turn more than the local maps say, and E^R lets the whole cat follow. Below, only the "
+                "direction (dashed) is given, n . (v_k - v_l) = 0, and rears up by 40 degrees: the length of "
+                "the edge is free, and a share of E^F, which keeps sizes, lets the cat shrink a little."
             ),
-            params={"example": "cat", "stage": "frames", "constraint": "held", "energy": "similarity"},
+            params={
+                "example": "cat",
+                "stage": "frames",
+                "constraint": "held",
+                "energy": "similarity",
+                "beside": "direction",
+            },
         ),
     },
     time=Time("t", 0.0, 1.0),
+    mesh=_MOVING,
 )
 def global_interp(
     stage: Annotated[
-        Literal["ends", "maps", "local", "global", "frames"],
-        Param("both shapes, local maps, one moment torn apart or stitched, or a strip of frames"),
-    ] = "ends",
+        Literal["ends", "maps", "local", "global", "morph", "frames"],
+        Param(
+            "both shapes, local maps, one moment torn apart or stitched, that shape alone, or a strip of "
+            "frames"
+        ),
+    ] = "global",
     example: Annotated[
         Literal["gecko", "fish", "snake", "cat", "three-triangles"], Param("which pair of shapes")
     ] = "gecko",
@@ -195,8 +206,12 @@ def global_interp(
         ),
     ] = "frobenius",
     beside: Annotated[
-        Literal["none", "frobenius", "similarity"],
-        Param("a second row, by this energy with consistent angles", only=("stage", "frames")),
+        Literal["none", "frobenius", "similarity", "both-angles", "direction"],
+        Param(
+            "a second row, by this energy with consistent angles; or E^F with the same angles above, and "
+            "with consistent ones below; or E^R and a share of E^F, an edge's direction given",
+            only=("stage", "frames"),
+        ),
     ] = "none",
     homotopy: Annotated[
         Literal["logexp", "arap", "linear"],
@@ -207,9 +222,10 @@ def global_interp(
         Param("of the local maps: without jumps over the mesh, or each within half a turn", only=_MOVING),
     ] = "consistent",
     constraint: Annotated[
-        Literal["line", "loci", "held"],
+        Literal["line", "loci", "held", "direction"],
         Param(
-            "barycentre on a line; nose and tail on curves; or barycentre thrown and an edge held",
+            "barycentre on a line; nose and tail on curves; or barycentre thrown, and an edge held, or only "
+            "its direction given",
             only=_WHOLE,
         ),
     ] = "line",
@@ -236,8 +252,12 @@ def global_interp(
     steps: Annotated[
         int, Param("frames from either end to the moment t", low=1, high=3, only=("stage", "frames"))
     ] = 2,
-    source: Annotated[Path | None, Param("your own shape: an outline (svg, csv, json) or a mesh")] = None,
-    target: Annotated[Path | None, Param("the shape that it turns into, of the same kind")] = None,
+    source: Annotated[
+        Path | None, Param("your own shape: an outline (svg, csv, json) or a mesh", positional=1)
+    ] = None,
+    target: Annotated[
+        Path | None, Param("the shape that it turns into, of the same kind", positional=2)
+    ] = None,
 ) -> Drawing:
     """Two triangulated shapes and the ways between them, from the local maps to the whole shape.
 
@@ -259,4 +279,6 @@ def global_interp(
             return pages.local(pair, choice, t)
         case "global":
             return pages.whole(pair, choice, t)
+        case "morph":
+            return pages.alone(pair, choice, t)
     return pages.frames(pair, choice, beside, steps, t)

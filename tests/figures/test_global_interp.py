@@ -91,6 +91,11 @@ class TestLargeRotations:
         assert np.array_equal(shown["theta"], plate("B6.6").numbers["theta"])
         assert shown["flipped"].max() == 0 and shown["least_det"].min() > 0.3
 
+    def test_and_stands_below_what_breaks(self, plate):
+        shown, broken = plate("B6.8").numbers, plate("B6.6").numbers
+        for name in ("theta", "flipped", "least_det", "energy"):
+            assert np.array_equal(shown[f"{name}_above"], broken[name])
+
     def test_nor_does_e_f_with_consistent_angles(self, plate):
         shown = plate("B6.8").numbers
         assert shown["flipped_beside"].max() == 0 and shown["least_det_beside"].min() > 0.3
@@ -157,6 +162,47 @@ class TestEnergies:
         chord = (shown["vertices"][:, a] - shown["vertices"][:, b]) @ (1.0, 1.0j)
         turn = np.angle(chord[1:] / chord[:-1]).sum()
         assert turn == pytest.approx(np.angle(chord[-1] / chord[0]) - 2.0 * np.pi)
+
+    def test_only_the_direction_of_an_edge(self, plate):
+        shown, pair = plate("G6.5").numbers, shapes.cat()
+        a, b = pair.marks["inner fore"], pair.marks["inner hind"]
+        V = shown["vertices_beside"]
+        first, *_, last = chord = (V[:, a] - V[:, b]) @ (1.0, 1.0j)
+        t = shown["times"]
+        angle = np.angle(first) + t * np.angle(last / first) + np.deg2rad(40.0) * np.sin(np.pi * t)
+        assert np.abs((chord * np.exp(-1j * angle)).imag).max() < 1e-12
+        assert shown["flipped_beside"].max() == 0
+        # Its length is not that between both ends' lengths.
+        assert np.abs(chord[2]) < 0.9 * min(np.abs(first), np.abs(last))
+        assert V[[0, -1]] == pytest.approx(np.stack([pair.source, pair.target]), abs=1e-9)
+
+    def test_up_to_similarity_a_direction_is_not_enough(self):
+        with pytest.raises(ValueError, match="a single point satisfies all"):
+            GLOBAL.draw(constraint="direction", energy="similarity")
+
+
+class TestMeshes:
+    @pytest.mark.parametrize("stage", ["global", "morph", "frames"])
+    @pytest.mark.parametrize("t", [0.0, 0.3, 1.0])
+    def test_it_is_that_of_the_moment(self, stage, t):
+        drawing, pair = GLOBAL.draw(stage=stage, example="fish", t=t), shapes.fish()
+        V = drawing.mesh.vertices
+        assert np.array_equal(drawing.mesh.faces, pair.faces) and not V[:, 2].any()
+        shown = drawing.numbers["vertices"]
+        assert np.array_equal(V[:, :2], shown[2] if stage == "frames" else shown)
+        for end, there in ((0.0, pair.source), (1.0, pair.target)):
+            assert t != end or V[:, :2] == pytest.approx(there, abs=1e-9)
+
+    def test_of_three_rows_the_one_asked_for(self):
+        drawing = GLOBAL.draw(**GLOBAL.plate_params("B6.8"))
+        assert np.array_equal(drawing.mesh.vertices[:, :2], drawing.numbers["vertices"][2])
+
+    def test_torn_apart_triangles_have_corners_of_their_own(self, plate):
+        mesh = GLOBAL.draw(stage="local").mesh
+        assert np.array_equal(mesh.vertices[mesh.faces][..., :2], plate("B6.3").numbers["corners"])
+
+    def test_two_shapes_are_not_one_moment(self):
+        assert GLOBAL.draw(stage="ends").mesh is None and GLOBAL.draw(stage="maps").mesh is None
 
 
 class TestFiles:
