@@ -116,7 +116,8 @@ def _centre(where: str, points: Array, origins: Array, weights: Weights) -> Arra
         [weights.translation] if weights.shared else [weights.translation, weights.rotation, weights.stretch]
     )
     for w in parts:
-        total, size = np.sum(w, axis=1), np.sum(np.abs(w), axis=1)
+        # The largest |w|, without an array of all of them.
+        total, size = np.sum(w, axis=1), np.maximum(np.max(w, axis=1), -np.min(w, axis=1))
         here = open_ & (size > 0.0)
         lost = here & (np.abs(total) <= CANCELLED * size)
         if np.any(lost):

@@ -124,7 +124,8 @@ def inverse_distance(distances: ArrayLike, power: float = 2.0) -> Array:
     r, p = lengths(where, distances), float(positive(where, "power", power, 0))
     largest = np.max(r, initial=0.0, where=np.isfinite(r)) or 1.0
     with np.errstate(over="ignore", divide="ignore", under="ignore"):
-        w = np.maximum(r, NEAREST * largest) ** p
+        w = np.maximum(r, NEAREST * largest)
+        w **= p
         np.divide(1.0, w, out=w)
     if not np.all(w <= checks.LARGEST):
         index = checks.first(~(w <= checks.LARGEST))
@@ -159,7 +160,11 @@ def cutoff(distances: ArrayLike, reach: ArrayLike, power: float = 2.0) -> Array:
     where = "weights.cutoff"
     r = lengths(where, distances)
     d, p = positive(where, "reach", reach, r.shape[1]), float(positive(where, "power", power, 0))
-    return np.maximum(1.0 - r / d, 0.0) ** p
+    w = r / -d
+    w += 1.0
+    np.maximum(w, 0.0, out=w)
+    w **= p
+    return w
 
 
 def gaussian(distances: ArrayLike, width: ArrayLike) -> Array:

@@ -1,5 +1,7 @@
 """The probe deformer: its laws, the erratum about the origin, whole turns, and what it refuses."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from pytransform3d import transformations as pt
@@ -30,8 +32,10 @@ RIGID = frame([1.0, -2.0, 3.0], so3.exp([0.5, -1.1, 0.8]))
 AFFINE = affine.phi_so(0.5 * np.random.default_rng(4).normal(size=12))
 
 
-def solve(points=V, rest=REST, current=CURRENT, w=W, origin=None, **rest_of_them) -> np.ndarray:
-    return probe.solve(probe.prepare(points, rest, w, origin), current, **rest_of_them).points
+def solve(
+    points: Any = V, rest: Any = REST, current: Any = CURRENT, w: Any = W, origin=None, **others
+) -> np.ndarray:
+    return probe.solve(probe.prepare(points, rest, w, origin), current, **others).points
 
 
 @EVERY
@@ -111,7 +115,7 @@ def test_about_the_origin_of_the_world_it_is_the_printed_formula(way):
 def test_the_printed_formula_depends_on_the_origin():
     """A quarter turn at weight 1/2 about a probe at x = 10, of the point (11, 0)."""
     rest, current = frame([10.0, 0, 0])[None], frame([10.0, 0, 0], so3.rotation("z", np.pi / 2))[None]
-    half = dict(points=[[11.0, 0, 0]], rest=rest, current=current, w=[[0.5]])
+    half = {"points": [[11.0, 0, 0]], "rest": rest, "current": current, "w": [[0.5]]}
     np.testing.assert_allclose(solve(**half, origin=[0, 0, 0]), [[12.778, 2.778, 0.0]], atol=1e-3)
     np.testing.assert_allclose(solve(**half), [[10 + np.sqrt(0.5), np.sqrt(0.5), 0.0]], atol=1e-14)
 
@@ -347,41 +351,41 @@ def changed(a: np.ndarray, index, value) -> np.ndarray:
     ("arguments", "message"),
     [
         (
-            dict(points=changed(V, (3, 1), np.nan)),
+            {"points": changed(V, (3, 1), np.nan)},
             r"move\.prepare: points must be finite; got nan at index \(3,\)",
         ),
-        (dict(points=V[:, :2]), r"move\.prepare: points must be an array of shape"),
-        (dict(points=V[:-1]), r"move\.prepare: weights must be an array of shape \(299, 4\)"),
-        (dict(w=W[:, :2]), r"move\.prepare: weights must be an array of shape \(300, 4\)"),
-        (dict(w=changed(W, (5, 0), np.inf)), r"move\.prepare: weights must be finite"),
+        ({"points": V[:, :2]}, r"move\.prepare: points must be an array of shape"),
+        ({"points": V[:-1]}, r"move\.prepare: weights must be an array of shape \(299, 4\)"),
+        ({"w": W[:, :2]}, r"move\.prepare: weights must be an array of shape \(300, 4\)"),
+        ({"w": changed(W, (5, 0), np.inf)}, r"move\.prepare: weights must be finite"),
         (
-            dict(w=np.tile([1.0, -1.0, 0, 0], (N, 1))),
+            {"w": np.tile([1.0, -1.0, 0, 0], (N, 1))},
             r"move\.prepare: weights must be with a sum other than 0 .*300 of 300",
         ),
-        (dict(w=changed(W, (0, 0), 1e155)), r"move\.prepare: weights must be at most"),
-        (dict(rest=REST[0]), r"probe\.prepare: rest must be an array of shape \(k, 4, 4\)"),
-        (dict(rest=REST[:0], w=W[:, :0]), r"probe\.prepare: rest must be an array of shape \(k, 4, 4\)"),
+        ({"w": changed(W, (0, 0), 1e155)}, r"move\.prepare: weights must be at most"),
+        ({"rest": REST[0]}, r"probe\.prepare: rest must be an array of shape \(k, 4, 4\)"),
+        ({"rest": REST[:0], "w": W[:, :0]}, r"probe\.prepare: rest must be an array of shape \(k, 4, 4\)"),
         (
-            dict(rest=REST @ np.diag([1.0, 1, 0, 1])),
+            {"rest": REST @ np.diag([1.0, 1, 0, 1])},
             r"probe\.prepare: rest must be invertible frames; .* at index \(0,\)",
         ),
-        (dict(rest=np.ones((K, 4, 4))), r"probe\.prepare: rest must be an affine transformation"),
+        ({"rest": np.ones((K, 4, 4))}, r"probe\.prepare: rest must be an affine transformation"),
         (
-            dict(current=CURRENT[:3]),
+            {"current": CURRENT[:3]},
             r"probe\.pose: current must be an array of shape \(4, 4, 4\); got shape \(3, 4, 4\)",
         ),
-        (dict(current=changed(CURRENT, (1, 0, 0), np.nan)), r"probe\.pose: current must be finite"),
-        (dict(current="here"), r"probe\.pose: current must be real numbers"),
+        ({"current": changed(CURRENT, (1, 0, 0), np.nan)}, r"probe\.pose: current must be finite"),
+        ({"current": "here"}, r"probe\.pose: current must be real numbers"),
         (
-            dict(current=np.stack([CURRENT] * 2)),
+            {"current": np.stack([CURRENT] * 2)},
             r"probe\.pose: current must be an array of shape \(4, 4, 4\)",
         ),
-        (dict(origin=np.zeros((2, 3))), r"move\.prepare: weights must be an array of shape \(300, 2\)"),
-        (dict(origin=[0.0, np.nan, 0]), r"move\.prepare: origins must be finite"),
-        (dict(turns=np.zeros((3, 3))), r"probe\.pose: turns must be of shape \(4, 3\)"),
-        (dict(turns=np.full((4, 3), np.nan)), r"probe\.pose: turns must be finite"),
+        ({"origin": np.zeros((2, 3))}, r"move\.prepare: weights must be an array of shape \(300, 2\)"),
+        ({"origin": [0.0, np.nan, 0]}, r"move\.prepare: origins must be finite"),
+        ({"turns": np.zeros((3, 3))}, r"probe\.pose: turns must be of shape \(4, 3\)"),
+        ({"turns": np.full((4, 3), np.nan)}, r"probe\.pose: turns must be finite"),
         (
-            dict(w=1e4 * W),
+            {"w": 1e4 * W},
             r"move\.solve: weights must be such that their sum is a transformation; got .*overflows at index",
         ),
     ],
