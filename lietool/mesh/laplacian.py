@@ -82,6 +82,39 @@ def mass(V: ArrayLike, F: ArrayLike) -> Array:
     return np.bincount(F.ravel(), np.repeat(third, 3), len(V)).astype(float, copy=False)
 
 
+def voronoi_mass(V: ArrayLike, F: ArrayLike) -> Array:
+    """Return the lumped masses of Voronoi cells: what of each triangle is nearest to each of its corners.
+
+    In obtuse triangles half of the area goes to the obtuse corner and a quarter to the others (Meyer,
+    Desbrun, Schroeder and Barr 2003), so that no mass is negative.
+
+    Parameters
+    ----------
+    V : array_like, shape (n, 3)
+    F : array_like of int, shape (m, 3)
+
+    Returns
+    -------
+    M : ndarray, shape (n,)
+        0 where no triangle uses the vertex.
+
+    Raises
+    ------
+    ValueError
+        If V or F is none, or a triangle has area 0.
+    """
+    V, F = checked("laplacian.voronoi_mass", V, F)
+    cot, corner = cotangents(V, F), V[F]
+    edge = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)  # opposite to each corner
+    square = cot * np.einsum("fki,fki->fk", edge, edge)
+    # The perpendicular bisectors cut an eighth of cot |e|^2 off at both ends of an edge.
+    share = (square.sum(axis=1, keepdims=True) - square) / 8.0
+    area = 0.5 * np.linalg.norm(_cross(V, F), axis=1)[:, None]
+    obtuse = (cot < 0.0).any(axis=1, keepdims=True)
+    share = np.where(obtuse, np.where(cot < 0.0, area / 2.0, area / 4.0), share)
+    return np.bincount(F.ravel(), share.ravel(), len(V)).astype(float, copy=False)
+
+
 def gradient(V: ArrayLike, F: ArrayLike) -> Any:
     """Return the matrix G with (G @ x).reshape(m, 3) the gradients of x, one in each triangle.
 
@@ -179,11 +212,15 @@ def degenerate(V: Array, F: Index) -> NDArray[np.bool_]:
     return ~(np.linalg.norm(_cross(V, F), axis=1) > FLAT * longest)
 
 
-def named(what: str, bad: NDArray[np.bool_], most: int = 4) -> str:
-    """Return the first few of what is bad as words, such as "faces 3, 5 and 9 more"."""
-    index = np.flatnonzero(bad)
+def named(what: str, bad: NDArray[np.bool_]) -> str:
+    """Return the first few of what is bad as words, such as "face 3" or "vertex 5, 7, 8, 9 and 12 more"."""
+    return listed(what, np.flatnonzero(bad))
+
+
+def listed(what: str, index: Index, most: int = 4) -> str:
+    """Return the first few of some indices as words."""
     more = f" and {len(index) - most} more" if len(index) > most else ""
-    return f"{what}{'s' if len(index) > 1 else ''} {', '.join(map(str, index[:most]))}{more}"
+    return f"{what} {', '.join(map(str, index[:most]))}{more}"
 
 
 def _cross(V: Array, F: Index) -> Array:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lietool.mesh import elimination, topology
-from lietool.mesh.laplacian import named
+from lietool.mesh.laplacian import listed, named
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -174,7 +174,7 @@ def _refuse_floating(where: str, L: Any, given: NDArray[np.bool_]) -> None:
     floating = np.bincount(part[held], minlength=number) == 0
     if floating.any():
         first = np.unique(part, return_index=True)[1][floating]
-        got = f"none in {len(first)} of {number}, those of {named('vertex', np.isin(np.arange(n), first))}"
+        got = f"none in {len(first)} of {number}, those of {listed('vertex', first)}"
         topology.fail(where, "fixed", "a vertex in every connected part", got, "Fix a vertex in each.")
 
 
