@@ -46,7 +46,8 @@ RULES = {
     "figure": _rule("declaration parameter paths", ours_lazily="figures"),
     "cli": _rule("figure paths lietool", "click", "rich", ours_lazily="verbs"),
     "lie": _rule("lie", "numpy", "scipy"),
-    "mesh": _rule("mesh lie", "numpy", "scipy trimesh skimage svgelements"),
+    # Solids that take seconds to make are kept in the cache folder, and written there whole.
+    "mesh": _rule("mesh lie cache atomic", "numpy", "scipy trimesh skimage svgelements"),
     "interp": _rule("interp lie mesh", "numpy", "scipy skimage"),
     "deform": _rule("deform lie mesh", "numpy", "scipy skimage"),
     "bench": _rule("bench lie mesh interp", "numpy mpmath", "scipy pytransform3d"),
