@@ -65,11 +65,11 @@ def refuse(A: ArrayLike) -> Oriented:
     bad = ~(d[..., 2] > matrix_checks.UNDECIDED * d[..., 0])
     if np.any(bad):
         index = checks.first(bad)
-        got = f"det = {np.linalg.det(a[index][:3, :3]):.3g}, one of {int(np.sum(bad))}"
-        must = "transformations with det > 0"
-        checks.fail(
-            where, "A", must, got, index, "It turns inside out or flattens; mend it, or take nearest(A)."
-        )
+        # The signed singular values say more than a determinant, which may be large and yet rounding.
+        values = ", ".join(f"{x:.3g}" for x in d[index])
+        got = f"singular values {values}, one of {int(np.sum(bad))}"
+        must, remedy = "transformations with det > 0", "Mend it, or take orientation.nearest(A)."
+        checks.fail(where, "A", must, got, index, remedy)
     return Oriented(a.copy(), bad)
 
 
