@@ -193,10 +193,14 @@ def _rotations(prepared: Prepared, J: Array) -> Array:
     is what makes the energy least.
     """
     S = prepared.around @ (prepared.area[:, None, None] * J).reshape(-1, 9)
-    R = polar.rotation(S.reshape(-1, 3, 3), check=False)
-    # Where all faces are points, or no face is, every rotation is as near as any other.
-    none = ~S.any(axis=1)
-    R[none] = np.eye(3)
+    S = S.reshape(-1, 3, 3)
+    R = polar.rotation(S, check=False)
+    # Faces crushed to a line or a point, or none at all: many rotations are as near, and polar finds none.
+    loss = np.max(np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)), axis=(1, 2))
+    if (crushed := ~(loss <= 1e-9)).any():
+        U, _, W = np.linalg.svd(S[crushed])
+        U[:, :, 2] *= np.linalg.det(U @ W)[:, None]
+        R[crushed] = U @ W
     return R
 
 

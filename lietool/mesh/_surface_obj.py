@@ -23,7 +23,7 @@ _CORNER = re.compile(r"-?\d+(/(-?\d*)(/(-?\d*))?)?")
 def decode(place: Place, text: str) -> Mesh:
     """Return the mesh in the text of a file .obj; all its groups and objects are one mesh."""
     rows: dict[str, Lines] = {"v": [], "vt": [], "f": []}
-    for number, line in enumerate(text.replace("\\\r\n", "  \n").replace("\\\n", " \n").splitlines(), 1):
+    for number, line in _lines(text):
         word, _, rest = line.partition("#")[0].strip().replace("\t", " ").partition(" ")
         if word in rows:
             rows[word].append((number, rest))
@@ -45,6 +45,21 @@ def decode(place: Place, text: str) -> Mesh:
     flat = np.zeros((len(uv), 2))
     flat[:, : min(uv.shape[1], 2)] = uv[:, :2]
     return Mesh(V, faces[F], flat, uv_corner[F], colours)
+
+
+def _lines(text: str) -> Lines:
+    """Return the lines with their numbers; one that ends with a backslash goes on in the next."""
+    lines = list(enumerate(text.splitlines(), 1))
+    if "\\" not in text:
+        return lines
+    joined: Lines = []
+    for number, line in lines:
+        if joined and joined[-1][1].endswith("\\"):
+            first, start = joined.pop()
+            joined.append((first, f"{start[:-1]} {line}"))
+        else:
+            joined.append((number, line))
+    return joined
 
 
 def _positions(place: Place, rows: Lines) -> tuple[Array, Array | None]:

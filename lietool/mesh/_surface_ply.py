@@ -68,10 +68,10 @@ def decode(place: Place, data: bytes) -> Mesh:
     count, corner = listed
     if count.min() < 3:
         place.fail("a mesh whose faces have three corners or more", f"{count.min()} in face {count.argmin()}")
-    bad = ~((corner >= 0) & (corner < len(V)))
+    bad = ~((corner >= 0) & (corner < len(V)) & (corner == np.floor(corner)))
     if bad.any():
         k = int(np.argmax(bad))
-        got = f"{corner[k]:.0f} in face {np.repeat(np.arange(len(count)), count)[k]}"
+        got = f"{corner[k]:g} in face {np.repeat(np.arange(len(count)), count)[k]}"
         place.fail(f"a mesh whose faces use its vertices, 0 to {len(V) - 1}", got)
     _, F = fan(count)
     faces = corner.astype(np.intp)[F]
