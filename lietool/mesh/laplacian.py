@@ -22,7 +22,7 @@ FLAT = 1e-14
 def cotangent(V: ArrayLike, F: ArrayLike) -> Any:
     """Return the stiffness matrix: x^T L x is the Dirichlet energy, the integral of |grad x|^2.
 
-    Book: (7.13), with the sign that the positive matrix needs.
+    Book: (7.14), the matrix A.
 
     Parameters
     ----------
@@ -117,8 +117,6 @@ def voronoi_mass(V: ArrayLike, F: ArrayLike) -> Array:
 
 def gradient(V: ArrayLike, F: ArrayLike) -> Any:
     """Return the matrix G with (G @ x).reshape(m, 3) the gradients of x, one in each triangle.
-
-    Book: (7.12)
 
     Parameters
     ----------

@@ -105,6 +105,8 @@ class Factor:
 def factor(L: Any, fixed: ArrayLike) -> Factor:
     """Return the factors of a symmetric positive semi-definite system with some values given.
 
+    Book: (7.14)
+
     Parameters
     ----------
     L : sparse array, shape (n, n)

@@ -69,7 +69,6 @@ def test_rows_of_the_stiffness_sum_to_0_and_it_is_the_dirichlet_energy(mesh):
 
 
 @MESHES
-@pytest.mark.equation("B 7.12")
 def test_the_gradient_of_a_linear_function_is_its_part_along_each_triangle(mesh):
     V, F = mesh
     a = np.array([1.0, -2.0, 0.5])

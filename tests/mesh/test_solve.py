@@ -18,6 +18,7 @@ def chain(*lengths: int) -> csc_array:
     return L
 
 
+@pytest.mark.equation("B 7.14")
 def test_solutions_are_those_of_a_dense_solver():
     rng = np.random.default_rng(0)
     L, n = chain(30), 30
