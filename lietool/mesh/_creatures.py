@@ -60,7 +60,7 @@ def _legs() -> list[tuple[Bone, Limb]]:
             legs += [
                 (
                     Bone(upper, parent, top, knee),
-                    Limb(upper, np.array([top, knee]), np.array([0.25, 0.185]), 0.16),
+                    Limb(upper, np.array([top, knee]), np.array([0.22, 0.185]), 0.34),
                 ),
                 (
                     Bone(lower, upper, knee, ankle),

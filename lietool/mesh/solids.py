@@ -11,11 +11,11 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lietool.lie import so3, sym
 from lietool.mesh import _creatures, _even, _implicit, _kept, _sculptures, _strings
 from lietool.mesh._flesh import Limb
 from lietool.mesh._implicit import Body
 from lietool.mesh._solid import Solid, changed, frozen, normals
+from lietool.mesh._thorns import thorn_maps, thorn_targets
 from lietool.mesh.topology import fail
 
 Array = NDArray[np.float64]
@@ -34,6 +34,7 @@ __all__ = [
     "octopus",
     "strings",
     "thorn_ball",
+    "thorn_maps",
     "thorn_targets",
 ]
 
@@ -45,8 +46,6 @@ _FINEST, _COARSEST = 0.015, 0.15
 _THINNEST = 0.042
 # What is kept of a solid, beside its targets.
 _OWN = ("V", "F", "part", "along", "around", "distances")
-# Where the thorn begins to follow its targets, and from where it follows wholly.
-_THORN = (0.92, 1.9)
 
 
 @cache
@@ -100,45 +99,6 @@ def thorn_ball(spacing: float = FINE) -> Solid:
     return changed(solid, targets={"one": one, "two": two})
 
 
-def thorn_targets(
-    ball: Solid, angle: float = np.radians(134.0), shear: float = 0.3, stretch: ArrayLike = (0.2, 0.2, 0.0)
-) -> tuple[Array, Array]:
-    """Return the large thorn turned one way and slanted, and turned the other way and slanted back.
-
-    At height z the thorn undergoes exp(s X) exp(s (+-Y + D)) about
-    the middle of where s rises, X the turn by +-angle about z,
-    Y = shear (e_x e_z^T + e_z e_x^T), D the diagonal matrix of `stretch`; s rises smoothly from 0 at the foot
-    to 1, so that the ball stays as it is.
-
-    Parameters
-    ----------
-    ball : Solid
-        Of `thorn_ball`.
-    angle : float
-        In radians.
-    shear : float
-    stretch : array_like, shape (3,)
-        Logarithms of factors along x, y and z.
-
-    Returns
-    -------
-    one, two : ndarray, shape (n, 3)
-    """
-    V = ball.vertices
-    low, high = _THORN
-    t = np.clip((V[:, 2] - low) / (high - low), 0.0, 1.0)
-    s = np.where(ball.of("small"), 0.0, t * t * (3.0 - 2.0 * t))
-    middle = np.array([0.0, 0.0, 0.5 * (low + high)])
-    D = np.diag(np.asarray(stretch, float))
-    Y = shear * np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
-    made = []
-    for sign in (1.0, -1.0):
-        R = so3.exp(s[:, None] * (0.0, 0.0, sign * angle))
-        A = R @ sym.exp(s[:, None, None] * (sign * Y + D))
-        made.append(np.round((A @ (V - middle)[:, :, None])[:, :, 0] + middle, 7))
-    return made[0], made[1]
-
-
 @cache
 def animals(spacing: float = FINE) -> Solid:
     """Return a plump animal on four legs, and its relatives "tall", "fat", "long" and "bent" as targets.
@@ -159,7 +119,7 @@ def animals(spacing: float = FINE) -> Solid:
         If the spacing is out of range.
     """
     beast = _creatures.animal()
-    solid = _solid("animals", beast.body, spacing, beast.marks, eye=0.062, more=_poses)
+    solid = _solid("animals", beast.body, spacing, beast.marks, eye=0.072, more=_poses)
     return changed(solid, vertices=solid.vertices - np.array([0.0, 0.0, solid.vertices[:, 2].min()]))
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lietool.lie import so3
+from lietool.lie import so3, sym
 from lietool.mesh import _kept, cut, particles, solids, topology
 from lietool.mesh.solids import DRAFT, SOLIDS
 
@@ -250,3 +250,14 @@ def test_cut_keeps_the_surface_and_follows_the_level():
 def test_refusals(call, words):
     with pytest.raises(ValueError, match=words):
         call()
+
+
+def test_thorn_maps_are_the_stated_ones():
+    ball = solids.thorn_ball(DRAFT)
+    maps = solids.thorn_maps(ball)
+    whole = (ball.vertices[:, 2] > 1.9) & ball.of("thorn")
+    Y, D = 0.3 * np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]), np.diag([0.2, 0.2, 0.0])
+    for A, sign in zip(maps, (1.0, -1.0), strict=True):
+        expected = so3.exp([0.0, 0.0, sign * np.radians(134.0)]) @ sym.exp(sign * Y + D)
+        np.testing.assert_allclose(A[whole], np.broadcast_to(expected, A[whole].shape), atol=1e-12)
+        np.testing.assert_allclose(A[ball.of("small")], np.broadcast_to(np.eye(3), A[ball.of("small")].shape))
