@@ -114,10 +114,11 @@ def _check(place: Place, mesh: Mesh) -> None:
     if bad.any():
         (k,) = checks.first(bad)
         place.fail("a mesh of finite vertices", f"{mesh.vertices[k].tolist()} as vertex {k}")
-    for name, values in mesh.attributes.items():
-        if not np.isfinite(values).all():
-            (k,) = checks.first(~np.isfinite(values))
-            place.fail(f"a mesh with finite numbers {name}", f"{values[k]} at vertex {k}")
+    named = {"colour": mesh.colours, "texture coordinate": mesh.uv} | mesh.attributes
+    for name, values in named.items():
+        if values is not None and not np.isfinite(values).all():
+            index = checks.first(~np.isfinite(values))
+            place.fail(f"a mesh with finite numbers, {name}", f"{values[index]} as number {index[0]}")
     outside = np.any((mesh.faces < 0) | (mesh.faces >= len(mesh.vertices)), axis=1)
     if outside.any():
         (k,) = checks.first(outside)

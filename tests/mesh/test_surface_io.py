@@ -259,6 +259,14 @@ BROKEN = {
         PLY.replace("0 1 0\n", "nan 1 0\n") + "3 0 1 2\n",
         r"finite vertices; got \[nan, .* as vertex 2",
     ),
+    "weight.ply": (
+        surface_io.encode(Mesh(V, F, attributes={"arm": np.full(6, np.inf)}), ".ply"),
+        "a mesh with finite numbers, arm; got inf as number 0",
+    ),
+    "uv.ply": (
+        surface_io.encode(Mesh(V, F, np.full((1, 2), np.nan), 0 * F), ".ply"),
+        "a mesh with finite numbers, texture coordinate; got nan",
+    ),
     "word.ply": (PLY + "3 0 1 x\n", "a mesh of numbers behind its header; got could not convert"),
     "cut.ply": (PLY + "3 0 1\n", "a whole mesh, with 1 of face"),
     "two.ply": (PLY + "2 0 1\n", "three corners or more; got 2 in face 0"),
