@@ -209,7 +209,8 @@ def global_interp(
         Literal["none", "frobenius", "similarity", "both-angles", "direction"],
         Param(
             "a second row, by this energy with consistent angles; or E^F with the same angles above, and "
-            "with consistent ones below; or E^R and a share of E^F, an edge's direction given",
+            "with consistent ones below; or E^R and a share of E^F, barycentre thrown, and only the direction "
+            "of an edge given",
             only=("stage", "frames"),
         ),
     ] = "none",
@@ -222,10 +223,9 @@ def global_interp(
         Param("of the local maps: without jumps over the mesh, or each within half a turn", only=_MOVING),
     ] = "consistent",
     constraint: Annotated[
-        Literal["line", "loci", "held", "direction"],
+        Literal["line", "loci", "held"],
         Param(
-            "barycentre on a line; nose and tail on curves; or barycentre thrown, and an edge held, or only "
-            "its direction given",
+            "barycentre on a line; nose and tail on curves; or barycentre thrown and an edge held",
             only=_WHOLE,
         ),
     ] = "line",

@@ -176,10 +176,6 @@ class TestEnergies:
         assert np.abs(chord[2]) < 0.9 * min(np.abs(first), np.abs(last))
         assert V[[0, -1]] == pytest.approx(np.stack([pair.source, pair.target]), abs=1e-9)
 
-    def test_up_to_similarity_a_direction_is_not_enough(self):
-        with pytest.raises(ValueError, match="a single point satisfies all"):
-            GLOBAL.draw(constraint="direction", energy="similarity")
-
 
 class TestMeshes:
     @pytest.mark.parametrize("stage", ["global", "morph", "frames"])
