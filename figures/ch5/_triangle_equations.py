@@ -13,26 +13,29 @@ from . import _triangle_map as maps
 from . import _triangle_shape as shapes
 
 # Heights of the rows: matrices, factors, and the flat space; columns of the factors at both ends.
-_TOP, _GROUP, _FLAT = 742.0, 452.0, 150.0
+_TOP, _GROUP, _FLAT = 716.0, 438.0, 136.0
 _COLUMNS = ((150.0, 400.0), (800.0, 1050.0))
 _BAND = 196.0
 # From the middle of a matrix to its name's base line, and to where arrows begin and end.
 _NAME, _ABOVE, _BELOW = 58.0, 104.0, 58.0
+# From the middle of a row to the base line of its space's name, below the matrices.
+_SPACE = 74.0
 _MATRIX = {0: 212.0, 1: 988.0}
+_AS_IT_IS = r"\mathrm{as\ it\ is}"
 
 
 @dataclass(frozen=True, eq=False)
 class Factor:
     """One factor on its way: in the group, in the flat space at 1 and at t, and back.
 
-    `down` and `up` are the names of the maps between; the flat values are matrices or angles.
+    `down` and `up` are the lines of the names of the maps between; the flat values are matrices or angles.
     """
 
     names: tuple[str, str, str, str]
     group: tuple[np.ndarray, np.ndarray]
     flat: tuple[np.ndarray | float, np.ndarray | float]
-    down: str
-    up: str
+    down: tuple[str, ...]
+    up: tuple[str, ...]
     wrong: bool = False
 
 
@@ -40,11 +43,13 @@ def picture(given: maps.Map, method: str, t: float) -> scene.Picture:
     """Return the page of one method."""
     factors = _factors(given, method, t)
     spaces = _spaces(method)
+    title = rf"$\mathrm{{From\ }}A\mathrm{{\ to\ }}{maps.NAMES[method]}$"
     records: list[scene.Record] = [
         *_band(_GROUP + 6.0, style.GROUP, 0.07),
         *_band(_FLAT + 6.0, style.ALGEBRA, 0.07),
-        scene.Label(spaces[0], (600.0, _GROUP + _NAME, 0.0), style.GROUP_TEXT, style.TEXT, anchor="cn"),
-        scene.Label(spaces[1], (600.0, _FLAT + _NAME, 0.0), style.ALGEBRA_TEXT, style.TEXT, anchor="cn"),
+        scene.Label(title, (600.0, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn"),
+        scene.Label(spaces[0], (600.0, _GROUP - _SPACE, 0.0), style.GROUP_TEXT, style.TEXT, anchor="cn"),
+        scene.Label(spaces[1], (600.0, _FLAT - _SPACE, 0.0), style.ALGEBRA_TEXT, style.TEXT, anchor="cn"),
         *_across(t),
         *_matrices(given, method, t, len(factors)),
     ]
@@ -61,24 +66,32 @@ def _factors(given: maps.Map, method: str, t: float) -> tuple[Factor, ...]:
         if method == "linear":
             det = float(np.linalg.det(both[1]))
             names = ("A", "A", r"(1 - t)\,I + t\,A", "A^L(t)")
-            return (Factor(names, both, both, r"\subset", rf"\mathrm{{det}} = {fixed(det)}", det <= 0.0),)
+            return (Factor(names, both, both, (_AS_IT_IS,), _if_regular(det, "GL"), det <= 0.0),)
         L = logarithm(given)
         names = ("A", r"\log A", r"t\,\log A", maps.NAMES[method])
-        return (Factor(names, both, (L, t * L), r"\log", r"\exp"),)
+        return (Factor(names, both, (L, t * L), (r"\log",), (r"\exp",)),)
     names = ("R", r"\theta", r"t\,\theta", r"R_{t\theta}")
     turn = Factor(
-        names, (given.R, so2.exp(t * given.angle)), (given.angle, t * given.angle), r"\log", r"\exp"
+        names, (given.R, so2.exp(t * given.angle)), (given.angle, t * given.angle), (r"\log",), (r"\exp",)
     )
     S = given.stretches(method, np.array(t))
     if method == "logexp":
         L = sym.log(given.S)
         names = ("S", r"\log S", r"t\,\log S", "S^t")
-        return turn, Factor(names, (given.S, S), (L, t * L), r"\log", r"\exp")
+        return turn, Factor(names, (given.S, S), (L, t * L), (r"\log",), (r"\exp",))
     names = ("S", "S", r"(1 - t)\,I + t\,S", "S(t)")
     wrong = bool(np.linalg.eigvalsh(S)[0] <= 0.0)
-    return turn, Factor(
-        names, (given.S, S), (given.S, S), r"\subset", r"\mathrm{det} = " + fixed(np.linalg.det(S)), wrong
-    )
+    up = _if_regular(float(np.linalg.det(S)), r"Sym", wrong)
+    return turn, Factor(names, (given.S, S), (given.S, S), (_AS_IT_IS,), up, wrong)
+
+
+def _if_regular(det: float, space: str, wrong: bool = False) -> tuple[str, ...]:
+    """The map from the flat space back to a part of it, where the determinant has to be positive."""
+    value = fixed(det) if abs(det) < 100.0 else f"{det:.4g}"
+    if det <= 0.0 or wrong:
+        sign = ">" if det > 0.0 else r"\leq"
+        return rf"\notin \mathrm{{{space}}}^{{+}}(2)", rf"\mathrm{{det}} = {value} {sign} 0"
+    return _AS_IT_IS, rf"\mathrm{{det}} = {value} > 0"
 
 
 def logarithm(given: maps.Map) -> np.ndarray:
@@ -129,8 +142,8 @@ def _across(t: float) -> list[scene.Record]:
             (middle, _FLAT, 0.0),
             style.ALGEBRA_TEXT,
             style.SMALL_TEXT,
-            (0.0, -16.0),
-            "ct",
+            (0.0, 14.0),
+            "cb",
         ),
     ]
 
@@ -201,12 +214,12 @@ def _column(factor: Factor, x: float, k: int) -> list[scene.Record]:
     high, low = (x, _GROUP - _BELOW - 6.0), (x, _FLAT + _ABOVE)
     said = (factor.down, factor.up)[k]
     text = style.WRONG if factor.wrong and k else (style.ALGEBRA_TEXT, style.GROUP_TEXT)[k]
-    # Towards the other factor where there is one; a longer name has room on no other side.
-    left = x in (_COLUMNS[0][1], _COLUMNS[1][1])
+    # Towards the middle of the page where a longer name of the other factor has the room between them.
+    left = x in (_COLUMNS[0][1], *_COLUMNS[1])
     y, aside, anchor = (high[1] + low[1]) / 2.0, -18.0 if left else 18.0, "rc" if left else "lc"
     up = style.WRONG if factor.wrong else style.GROUP
     records += _arrow(low, high, up) if k else _arrow(high, low, style.ALGEBRA)
-    if said:
-        name = scene.Label(f"${said}$", (x, y, 0.0), text, style.SMALL_TEXT, (aside, 0.0), anchor)
-        records.append(name)
+    for i, words in enumerate(said):
+        at = (x, y + 40.0 * ((len(said) - 1) / 2.0 - i), 0.0)
+        records.append(scene.Label(f"${words}$", at, text, style.SMALL_TEXT, (aside, 0.0), anchor))
     return records

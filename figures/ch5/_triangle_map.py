@@ -19,7 +19,7 @@ NAMES = {
     "linear": "A^L(t)",
     "arap": "A^P(t)",
     "logexp": "A^E(t)",
-    "matrix-log": r"\exp(t\,\log A)",
+    "matrix-log": "A^t",
 }
 COLORS = {
     "linear": (style.ROUTE_1, style.ROUTE_1_TEXT),

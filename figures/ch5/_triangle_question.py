@@ -2,137 +2,132 @@
 
 import numpy as np
 
-from lietool.render import brackets, scene, style
+from lietool.render import scene, style
 from lietool.render.brackets import fixed
 
 from . import _triangle_map as maps
 from . import _triangle_shape as shapes
 
-# The ends' middles, where the lanes begin and end, and the rooms of a triangle.
-_LEFT, _RIGHT, _START, _STOP = 150.0, 1050.0, 380.0, 820.0
-_ENDS = (190.0, 250.0)
-# How far lanes are level before the first moment and after the last.
-_LEVEL = 120.0
-_MIDDLE, _PITCH = 430.0, 176.0
-_NUMBERS = 92.0
+# Where the first and the last moment lie, the part of the page for the lanes, and the line of time.
+_LEFT, _RIGHT = 232.0, 1082.0
+_LOW, _HIGH, _AXIS = 122.0, 808.0, 84.0
+_GAP = 22.0
+# The part of the time between source and target in which a lane comes to its height.
+_SWING = 0.24
+# The corners' names beside a triangle.
+_NAMES = 42.0
 
 
-def picture(given: maps.Map, steps: int, t: float, equations: bool) -> scene.Picture:
-    """Return the page: the ends, and a lane with a triangle for each method."""
+def picture(given: maps.Map, steps: int, t: float) -> scene.Picture:
+    """Return the page: the ends, and a lane with its triangles for each method."""
     shape = shapes.Shape.of(given)
-    middle, pitch = (_MIDDLE + 60.0, 150.0) if equations else (_MIDDLE, _PITCH)
-    question = r"One\ map,\,four\ ways\ to\ it:\ \ " if equations else r"Which\ triangle\ at\ "
-    said = rf"$\mathrm{{{question}}}t = {fixed(t)}" + ("$" if equations else r"\,\mathrm{?}$")
+    said = rf"$\mathrm{{Which\ triangle\ at\ }}t = {fixed(t)}\,\mathrm{{?}}$"
+    line = shapes.Strip(_LEFT, _RIGHT, min(t, 0.0), max(t, 1.0))
+    scale, heights = _places(given, shape, line, steps, t)
     records: list[scene.Record] = [
-        scene.Label(said, (600.0, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
+        scene.Label(said, (600.0, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn"),
+        *line.axis(_AXIS, shapes.moments(steps, 0.0)),
+        scene.Points([(float(line.x(t)), _AXIS, 0.0)], style.INK, 11.0, rim=style.PAPER, shaded=False),
     ]
-    line = shapes.Strip(_START, _STOP, min(t, 0.0), max(t, 1.0))
-    scale = _scale(given, shape, line, steps, t, pitch)
-    for k, method in enumerate(maps.METHODS):
-        y = middle + pitch * (1.5 - k)
-        records += _lane(given, shape, method, line, y, middle, steps, t, scale)
-    records += _ends(given, shape, middle)
-    if equations:
-        records += _equation(given)
+    lanes = list(zip(maps.METHODS, heights, strict=True))
+    for method, y in lanes:
+        records += _lane(given, method, line, float(y))
+    records += _ends(given, shape, line, scale)
+    for method, y in lanes:
+        if given.exists(method):
+            records += _stages(given, shape, method, line, float(y), steps, t, scale)
     return scene.Picture((scene.View(tuple(records)),))
 
 
-def _scale(
-    given: maps.Map, shape: shapes.Shape, line: shapes.Strip, steps: int, t: float, pitch: float
-) -> float:
-    times = np.unique(np.append(np.linspace(0.0, 1.0, 61), t))
-    films = [given.at(method, times) for method in maps.METHODS if given.exists(method)]
-    gap = (line.right - line.left) / (line.stop - line.start) / max(steps, 3)
-    wide, high = np.concatenate([shape.extent(film) for film in films]).max(axis=0)
-    return float(min(gap / 2.0 / wide, (pitch - 30.0) / 2.0 / high))
+def _places(
+    given: maps.Map, shape: shapes.Shape, line: shapes.Strip, steps: int, t: float
+) -> tuple[float, np.ndarray]:
+    """The scale of all triangles, and the heights of the lanes, as far apart as their triangles are high."""
+    # Away from the ends, where all lanes meet.
+    inside = np.linspace(_SWING, 1.0 - _SWING, 41)
+    ends = shape.extent(np.stack([np.eye(2), given.A]))
+    gap = (line.right - line.left) / (line.stop - line.start)
+    high = [
+        2.0 * shape.extent(given.at(method, np.append(inside, t)))[:, 1].max()
+        if given.exists(method)
+        else 0.0
+        for method in maps.METHODS
+    ]
+    most = [(_HIGH - _LOW) / 2.0 / ends[:, 1].max(), (_LEFT - 130.0) / ends[:, 0].max()]
+    for method in maps.METHODS:
+        if given.exists(method):
+            times = shapes.moments(steps, 0.0) if steps > 1 else np.array([0.0, t, 1.0])
+            wide = shape.extent(given.at(method, times))[:, 0]
+            most.append(1.04 * gap / len(times[1:]) / float((wide[1:] + wide[:-1]).max()))
+    # A lane without triangles has words.
+    heights = np.maximum(high, 0.2 * max(high))
+    return shapes.stack(heights, _LOW, _HIGH, _GAP, min(most))
 
 
-def _lane(
+def _height(t: np.ndarray, y: float) -> np.ndarray:
+    """How high a lane is at moments: it leaves the height of the ends, and comes back to it."""
+    part = np.clip(np.minimum(np.abs(t), np.abs(1.0 - t)) / _SWING, 0.0, 1.0)
+    middle = (_LOW + _HIGH) / 2.0
+    return middle + part**2 * (3.0 - 2.0 * part) * (y - middle)
+
+
+def _lane(given: maps.Map, method: str, line: shapes.Strip, y: float) -> list[scene.Record]:
+    """The way of one method from the source to the target, with its name."""
+    color, text = maps.COLORS[method]
+    span = np.linspace(line.start, line.stop, 241)
+    x, dash = line.x(span), maps.DASHES[method]
+    way = np.stack([x, _height(span, y), 0.0 * x], axis=-1)
+    sample = [(36.0, y - 10.0, 0.0), (126.0, y - 10.0, 0.0)]
+    name = f"${maps.NAMES[method]}$"
+    records: list[scene.Record] = [
+        scene.Label(name, (36.0, y, 0.0), text, style.SMALL_TEXT, anchor="lb"),
+        scene.Lines(sample, color, style.CURVE, dash=dash),
+    ]
+    if given.exists(method):
+        return [*records, scene.Lines(way, color, style.EDGE, dash=dash)]
+    none = r"$\mathrm{no\ real\ logarithm}$"
+    where = (float(line.x(0.5)), y, 0.0)
+    away = np.abs(way[:, 0] - where[0]) > 170.0
+    way[~away] = np.nan
+    return [
+        *records,
+        scene.Lines(way, color, style.EDGE, dash=dash),
+        scene.Label(none, where, style.WRONG, style.SMALL_TEXT),
+    ]
+
+
+def _stages(
     given: maps.Map,
     shape: shapes.Shape,
     method: str,
     line: shapes.Strip,
     y: float,
-    middle: float,
     steps: int,
     t: float,
     scale: float,
 ) -> list[scene.Record]:
-    """The way of one method from the source to the target, with its name and its triangles."""
-    color, text = maps.COLORS[method]
-    name = scene.Label(
-        "$A^t$" if method == "matrix-log" else f"${maps.NAMES[method]}$",
-        (line.left - _LEVEL, y, 0.0),
-        text,
-        style.SMALL_TEXT,
-        (4.0, 12.0),
-        "lb",
-    )
-    if not given.exists(method):
-        way = [_swing(_LEFT, line.left - _LEVEL, middle, y), _swing(_RIGHT, line.right + _LEVEL, middle, y)]
-        none = r"$\mathrm{no\ real\ logarithm}$"
-        where = ((line.left + line.right) / 2.0, y, 0.0)
-        return [
-            *(scene.Lines(part, color, style.EDGE, dash=maps.DASHES[method]) for part in way),
-            scene.Label(none, where, style.WRONG, style.SMALL_TEXT),
-            name,
-        ]
-    way = np.concatenate(
-        [_swing(_LEFT, line.left - _LEVEL, middle, y), _swing(_RIGHT, line.right + _LEVEL, middle, y)[::-1]]
-    )
-    records: list[scene.Record] = [scene.Lines(way, color, style.EDGE, dash=maps.DASHES[method]), name]
-    for moment in np.arange(1, steps) / steps:
-        A = given.at(method, moment)
-        colors = shapes.stage(float(moment), float(np.linalg.det(A)))
-        records += shape.draw(A, (float(line.x(moment)), y), scale, colors, width=style.THIN)
-    now = given.at(method, t)
-    edge = style.WRONG if np.linalg.det(now) <= 0.0 else color
-    return [*records, *shape.draw(now, (float(line.x(t)), y), scale, (style.PAPER, edge), width=style.CURVE)]
-
-
-def _swing(x0: float, x1: float, y0: float, y1: float) -> np.ndarray:
-    """A line that leaves one point level and comes to another level; shape (41, 3)."""
-    part = np.linspace(0.0, 1.0, 41)
-    smooth = part**2 * (3.0 - 2.0 * part)
-    return np.stack([x0 + part * (x1 - x0), y0 + smooth * (y1 - y0), 0.0 * part], axis=-1)
-
-
-def _ends(given: maps.Map, shape: shapes.Shape, middle: float) -> list[scene.Record]:
-    """Both triangles, with their corners named."""
-    ends = np.stack([np.eye(2), given.A])
-    scale = float((np.array(_ENDS) / 2.0 / shape.extent(ends).max(axis=0)).min())
+    """The triangles of one method at equal steps, in its tint, and outlined that of the moment."""
+    color = maps.COLORS[method][0]
     records: list[scene.Record] = []
-    for k, (A, x, name) in enumerate(zip(ends, (_LEFT, _RIGHT), "pq", strict=True)):
-        corners = scale * shape.corners @ A.T
-        # Paper behind, so that the lanes end at the triangle.
-        records += shape.draw(A, (x, middle), scale, shapes.stage(float(k), 1.0))
-        for i, corner in enumerate(corners):
-            out = corner / np.linalg.norm(corner)
-            at = (x + corner[0], middle + corner[1], 0.0)
-            prime = f"$\\mathbf{{{name}}}_{i + 1}$"
-            records.append(scene.Label(prime, at, style.INK, style.SMALL_TEXT, tuple(26.0 * out), room=44.0))
-        moment = f"$t = {k}$"
-        low = middle + float(corners[:, 1].min()) - 84.0
-        records.append(scene.Label(moment, (x, low, 0.0), style.MUTED, style.SMALL_TEXT, anchor="cn"))
+    for moment in [*np.arange(1, steps) / steps, t]:
+        A = given.at(method, moment)
+        edge = style.WRONG if np.linalg.det(A) <= 0.0 else color
+        here = moment == t
+        fill, width = (style.PAPER, style.CURVE) if here else (shapes.tint(edge), style.THIN)
+        at = float(line.x(moment)), float(_height(np.array(moment), y))
+        records += shape.draw(A, at, scale, (fill, edge), width=width)
     return records
 
 
-def _equation(given: maps.Map) -> list[scene.Record]:
-    """The map between the triangles from their corners, in numbers."""
-    target, source = (np.vstack([corners.T, np.ones(3)]) for corners in (given.target, given.source))
-    widths = [brackets.width(part) for part in (target, source, given.affine)]
-    left = 600.0 - (sum(widths) + 20.0 + 105.0 - 84.0) / 2.0
-    records: list[scene.Record] = [_sign(r"$\hat A\ =$", left - 16.0, "rc")]
-    records += brackets.matrix(target, left, _NUMBERS)
-    left += widths[0] + 20.0
-    records += brackets.matrix(source, left, _NUMBERS)
-    left += widths[1]
-    records.append(
-        scene.Label("$-1$", (left + 4.0, _NUMBERS + 52.0, 0.0), style.INK, style.SMALL_TEXT, anchor="lc")
-    )
-    records.append(_sign(r"$\approx$", left + 68.0, "cc"))
-    return [*records, *brackets.matrix(given.affine, left + 105.0, _NUMBERS)]
-
-
-def _sign(text: str, x: float, anchor: str) -> scene.Label:
-    return scene.Label(text, (x, _NUMBERS, 0.0), style.INK, style.TEXT, anchor=anchor)
+def _ends(given: maps.Map, shape: shapes.Shape, line: shapes.Strip, scale: float) -> list[scene.Record]:
+    """Both triangles, with their corners named."""
+    records: list[scene.Record] = []
+    for k, (A, name) in enumerate(zip((np.eye(2), given.A), "pq", strict=True)):
+        at = float(line.x(k)), (_LOW + _HIGH) / 2.0
+        records += shape.draw(A, at, scale, shapes.stage(float(k), 1.0))
+        for i, corner in enumerate(scale * shape.corners @ A.T):
+            out = 26.0 * corner / np.linalg.norm(corner)
+            where = (at[0] + corner[0], at[1] + corner[1], 0.0)
+            said = f"$\\mathbf{{{name}}}_{i + 1}$"
+            records.append(scene.Label(said, where, style.INK, style.SMALL_TEXT, tuple(out), room=_NAMES))
+    return records

@@ -1,16 +1,24 @@
 """A triangle with the letter F in it, and a row of such triangles over a line of time."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
 from lietool.render import letter, plane, scene, style
+from lietool.render.theme import Color
 
 from . import _triangle_map as maps
 
 # How much of the room in the triangle the letter takes.
 _LETTER = 0.86
-Colors = tuple[str, str]
+# How much of a colour is in its tint.
+_TINT = 0.2
+# White at the sides of the page.
+_EDGE = 26.0
+# From one moment to the next, where each of them is named on the line of time.
+NAMED = 80.0
+Colors = tuple[Color, str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +62,7 @@ class Shape:
             Where its middle lies, in page units.
         scale : float
             Page units for a unit of the plane.
-        colors : tuple of str
+        colors : tuple of color and str
             Of the triangle's area, of its outline and the letter.
         width : float
             Of the outline.
@@ -69,6 +77,30 @@ class Shape:
             scene.Surface(glyph, letter.triangles(), edge, material="flat"),
             scene.Lines(np.concatenate([start, rim[1:], rim[:1], start]), edge, width),
         ]
+
+    def rim(
+        self, A: np.ndarray, at: tuple[float, float], scale: float, color: str, dash: tuple[float, float]
+    ) -> scene.Lines:
+        """Return nothing but the dashed outline of the triangle under a matrix."""
+        rim = plane.Plane(at, scale).at(plane.moved(A, self.corners))
+        return scene.Lines(np.concatenate([rim, rim[:1]]), color, style.EDGE, dash=dash)
+
+
+def tint(color: str) -> Color:
+    """Return a pale form of a colour."""
+    return style.ramp([_TINT], (style.PAPER, color))
+
+
+def cross(at: tuple[float, float]) -> list[scene.Record]:
+    """Return a red cross on the page, where a matrix is singular."""
+    arms = 9.0 * np.array([[1.0, 1.0, 0.0], [-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0]])
+    arms += [*at, 0.0]
+    return [scene.Lines(arms[i : i + 2], style.WRONG, style.CURVE) for i in (0, 2)]
+
+
+def fraction(t: float) -> str:
+    """Return a moment as mathtext, as a fraction in lowest terms."""
+    return f"${Fraction(float(t)).limit_denominator(99)}$"
 
 
 def stage(t: float, det: float) -> Colors:
@@ -111,13 +143,14 @@ class Strip:
         return self.left + part * (self.right - self.left)
 
     def scale(self, shape: Shape, rows: list[np.ndarray], times: np.ndarray, height: float) -> float:
-        """Return the scale at which neighbours hardly touch and none is higher than a height."""
+        """Return the scale at which neighbours hardly touch, and none is too high or leaves the page."""
         gaps = np.diff(self.x(times))
         limits = [np.inf]
         for A in rows:
             wide, high = np.moveaxis(shape.extent(A), -1, 0)
             limits.append(float((1.04 * gaps / (wide[1:] + wide[:-1])).min()) if len(gaps) else np.inf)
             limits.append(height / 2.0 / float(high.max()))
+            limits += [(self.left - _EDGE) / float(wide[0]), (1200.0 - _EDGE - self.right) / float(wide[-1])]
         return min(limits)
 
     def row(
@@ -130,17 +163,37 @@ class Strip:
             records += shape.draw(matrix, (float(self.x(t)), y), scale, colors, width=style.THIN)
         return records
 
-    def axis(self, y: float, *, names: bool = True) -> list[scene.Record]:
-        """Return the line of time with its 0 and 1."""
+    def axis(self, y: float, times: np.ndarray) -> list[scene.Record]:
+        """Return the line of time with its moments, which have a name where there is room for it."""
         low, high = self.left - 20.0, self.right + 34.0
         records: list[scene.Record] = [scene.Arrow((low, y, 0.0), (high, y, 0.0), style.MUTED, 0.8, 5.0)]
-        for k in (0.0, 1.0):
+        pitch = float(np.diff(self.x(times)).min()) if len(times) > 1 else np.inf
+        for k in times:
             x = float(self.x(k))
             records.append(scene.Lines([(x, y - 7.0, 0.0), (x, y + 7.0, 0.0)], style.INK, style.THIN))
-            if names:
+            if pitch >= NAMED or abs(k - np.round(k)) < 1e-9:
                 where = (x, y - 14.0, 0.0)
-                records.append(scene.Label(f"${k:.0f}$", where, style.INK, style.SMALL_TEXT, anchor="ct"))
-        if names:
-            name = scene.Label("$t$", (high, y, 0.0), style.INK, style.SMALL_TEXT, (0.0, -14.0), "ct")
-            records.append(name)
-        return records
+                records.append(scene.Label(fraction(k), where, style.INK, style.SMALL_TEXT, anchor="ct"))
+        name = scene.Label("$t$", (high, y, 0.0), style.INK, style.SMALL_TEXT, (0.0, -14.0), "ct")
+        return [*records, name]
+
+
+def stack(heights: np.ndarray, low: float, high: float, gap: float, most: float) -> tuple[float, np.ndarray]:
+    """Return the scale at which rows of such heights fill a part of the page, and their middles.
+
+    Parameters
+    ----------
+    heights : ndarray, shape (n,)
+        In units of the plane, from the uppermost row down.
+    low, high : float
+        The part of the page.
+    gap : float
+        Between rows.
+    most : float
+        The largest scale.
+    """
+    count = len(heights)
+    scale = min((high - low - gap * (count - 1)) / float(heights.sum()), most)
+    # What a smaller scale leaves goes between the rows.
+    pitch = scale * heights + (high - low + gap - scale * float(heights.sum())) / count
+    return scale, high + gap / 2.0 - np.cumsum(pitch) + pitch / 2.0

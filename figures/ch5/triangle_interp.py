@@ -6,6 +6,7 @@ import numpy as np
 
 from lietool.figure import Drawing, Param, Plate, Time, figure
 
+from . import _triangle_affine as affine
 from . import _triangle_compare as comparison
 from . import _triangle_equations as diagram
 from . import _triangle_map as maps
@@ -22,77 +23,79 @@ Corners = tuple[float, float, float, float, float, float]
             equations=("5.1", "5.2"),
             caption=(
                 "One affine map carries the grey triangle with its corners p to the orange one with its "
-                "corners q, and the letter with it. A homotopy A(t) of its linear part, from I at t = 0 "
-                "to A at t = 1, says which triangle is between them. Four of them, each on its lane: "
-                "the straight line, the two ways that take rotation and stretch apart, and the power of "
-                "A. Outlined: the triangle at t; on the lanes all are drawn smaller than both ends. They "
-                "disagree."
+                "corners q, and the letter with it. A homotopy A(t) of its linear part, from I at t = 0 to "
+                "A at t = 1, says which triangle is between them; all are drawn at one scale, each over its "
+                "t. Four homotopies, each on its lane: the straight line, the two that take rotation and "
+                "stretch apart, and the power of A. Outlined: the triangle at t. They disagree, least of "
+                "all A^P and A^E."
             ),
         ),
         "B5.1b": Plate(
             title="The affine map between two triangles",
             equations=("5.1", "5.2"),
             caption=(
-                "The same triangles and the map between them in numbers: the corners of both, as "
-                "columns over a row of ones, determine the only affine map that carries one to the "
-                "other. The upper left part of it is A, which the four ways on the lanes join to I; the "
-                "triangles there are drawn smaller than both ends."
+                "The same triangles where they lie in the plane, and the map between them in numbers: the "
+                "corners of both, as columns over a row of ones, determine the only affine map that carries "
+                "one to the other. Its linear part A (box) carries the grey triangle to the pale one and "
+                "leaves the origin where it is; the last column, d, moves that on to the orange one (by t "
+                "d, for t from 0 to 1)."
             ),
-            params={"equations": True},
+            params={"equations": True, "t": 0.0},
         ),
         "B5.2": Plate(
             title="As rigid as possible: the rotation on its circle, the stretch on a straight line",
             equations=("3.11", "4.19", "5.2"),
             caption=(
                 "A = R S is a point of SO(2) x Sym+(2). Left: R(t) turns evenly to R. Right: S(t) goes "
-                "straight from I to S in the cone of positive definite matrices (ellipses: the unit "
-                "disc under S(t)). Both together move the triangle: A(t) for the marked t, below for "
-                "equal steps. From 0 to 1 the line stays in the cone, which is convex; farther on it "
-                "leaves it (cross), and the triangle collapses and turns over (red)."
+                "straight from I to S in the cone of positive definite matrices, shown with the plane "
+                "through its axis in which all S(t) lie (ellipses: the unit disc under S(t)). Below: the "
+                "triangles of equal steps, outlined A(t). From 0 to 1 the line stays in the cone, which is "
+                "convex; farther on it meets its wall (cross), and there the triangle collapses and then is "
+                "turned over (red)."
             ),
-            params={"method": "arap", "steps": 3, "beyond": 0.67},
+            params={"method": "arap", "steps": 2, "beyond": 1.0},
         ),
         "B5.3": Plate(
             title="Log-Exp: rotation and stretch by their logarithms",
             equations=("3.11", "4.4", "4.19", "5.2"),
             caption=(
-                "The same map as a point of SO(2) x Sym+(2). The rotation turns as before, but the "
-                "stretch S(t) = exp(t log S) goes along a curve that never leaves the cone, however far "
-                "t goes on: no triangle collapses. A(t): that of the marked t; below: those of equal "
-                "steps."
+                "The same map as a point of SO(2) x Sym+(2), drawn as before. The rotation turns as it did, "
+                "but the stretch S(t) = exp(t log S) goes along a curve that bends away from the walls of "
+                "the cone and never reaches them, however far t goes on: the triangle becomes thin, but "
+                "never collapses. It is drawn as far as the rim."
             ),
-            params={"method": "logexp", "steps": 3, "beyond": 0.67},
+            params={"method": "logexp", "steps": 2, "beyond": 1.0},
         ),
         "B5.4": Plate(
             title="The maps of the as-rigid-as-possible interpolation",
             equations=("2.4", "3.11", "4.19"),
             caption=(
-                "From A on the left by the polar decomposition to a rotation and a stretch; down to a "
-                "space where straight lines may be drawn, the angle by the logarithm, the stretch as it "
-                "is; from there along the line from the identity to the moment t; up, and multiplied to "
-                "A(t). The upward arrow of the stretch needs its determinant to be positive: for t "
-                "outside [0, 1] it may not be, and is then red."
+                "From A on the left by the polar decomposition to a rotation and a stretch; down to a space "
+                "where straight lines may be drawn, the angle by the logarithm, the stretch as it is; from "
+                "there along the line from the identity to the moment t; up, and multiplied to A(t). "
+                "Upwards the stretch remains as it is, too, which is allowed only where it is positive "
+                "definite: for t outside [0, 1] it may not be, and is then red."
             ),
-            params={"method": "arap", "equations": True, "t": 0.4},
+            params={"method": "arap", "equations": True},
         ),
         "B5.5": Plate(
             title="The maps of the Log-Exp interpolation",
             equations=("2.4", "3.11", "4.4", "4.19"),
             caption=(
                 "The same diagram with a logarithm for both factors: below is a vector space, so(2) x "
-                "sym(2), where the way is t times one vector, and exp carries every vector of it back "
-                "to a rotation and a positive definite stretch."
+                "sym(2), where the way is t times one vector, and exp carries every vector of it back to a "
+                "rotation and a positive definite stretch."
             ),
-            params={"method": "logexp", "equations": True, "t": 0.4},
+            params={"method": "logexp", "equations": True},
         ),
         "B5.6": Plate(
             title="A symmetric map: straight line and power",
             equations=("4.19", "5.2"),
             caption=(
-                "Above: the triangle under (1 - t) I + t S; below: under S^t = exp(t log S); outlined: "
-                "at t. This S keeps areas, det S = 1, and so does each of its powers, while the "
-                "straight line makes the triangle swell on the way. Below: how the area changes, det, "
-                "over t."
+                "Upper row: the triangle under (1 - t) I + t S; lower row: under S^t = exp(t log S); "
+                "outlined: at t, with that of the other row dashed over it. This S keeps areas, det S = 1, "
+                "and so does each of its powers, while the straight line makes the triangle swell on the "
+                "way. Plot: how the area changes, det, over the same t."
             ),
             params={"compare": "linear,exponential", "target": (2.0, -1.2, -1.2, 1.22)},
         ),
@@ -101,22 +104,23 @@ Corners = tuple[float, float, float, float, float, float]
             equations=("3.11", "4.4", "5.2"),
             caption=(
                 "Both eigenvalues of A are negative. The straight line A^L passes through two singular "
-                "matrices (crosses), and between them the triangle is turned over (red). A^P and A^E do "
-                "not mind. A has no real logarithm, so that the power of A does not exist. Right: all A "
-                "by the angle of the rotation and the inequality of the stretches; with those in the "
-                "red part it is the same."
+                "matrices (crosses), and between them the triangle is turned over (red; larger in the "
+                "ring). A^P and A^E do not mind. A has no real logarithm, so that its power A^t does not "
+                "exist. Upper right: all A with det A > 0, by the angle of the rotation and the inequality "
+                "of the stretches; those in the red part have no real logarithm either. The open circle is "
+                "a half turn with equal stretches: it has one."
             ),
-            params={"compare": "methods", "target": (-1.27, 0.1, 0.64, -0.76)},
+            params={"compare": "methods", "target": (-1.8, 0.35, 0.85, -0.7)},
         ),
         "B5.6c": Plate(
             title="A map that all four ways reach",
             equations=("3.11", "4.4", "5.2"),
             caption=(
                 "The eigenvalues of A are not real: A has a real logarithm, and A^L does not collapse, "
-                "though it shrinks. A^E and the power of A have the same determinant for all t, but are "
-                "not the same: the power does not keep rotation and stretch apart, and distorts the "
-                "triangle on its way. Right: A lies beside the red part, where there is no real "
-                "logarithm."
+                "though it shrinks. A^E and the power A^t = exp(t log A) have the same determinant for all "
+                "t, but are not the same: the power does not keep rotation and stretch apart, and distorts "
+                "the triangle on its way (in the ring: A^E filled, A^t dashed). Upper right: A lies beside "
+                "the red part, where there is no real logarithm."
             ),
             params={"compare": "methods", "target": (-0.74, -0.33, 1.43, -0.74)},
         ),
@@ -139,7 +143,7 @@ def triangle_interp(
     target: Annotated[
         tuple[float, ...],
         Param("corners of the triangle at t = 1, or four numbers, the matrix A", low=-100, high=100),
-    ] = (4.83, 0.28, 3.02, 2.33, 4.13, 0.35),
+    ] = (4.8, 0.5, 3.0, 2.64, 4.16, 0.61),
     turns: Annotated[
         int,
         Param(
@@ -181,7 +185,7 @@ def triangle_interp(
         picture = comparison.four(given, steps, t)
         return Drawing(picture, maps.numbers(given, tuple(maps.METHODS), times, t))
     if method == "all":
-        picture = question.picture(given, steps, t, equations)
+        picture = affine.picture(given, t) if equations else question.picture(given, steps, t)
         return Drawing(picture, maps.numbers(given, tuple(maps.METHODS), times, t))
     if not given.exists(method):
         values = ", ".join(f"{value:.3g}" for value in np.linalg.eigvals(given.A).real)

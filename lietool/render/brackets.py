@@ -16,18 +16,33 @@ def fixed(value: float | np.floating | np.ndarray) -> str:
     return f"{round(float(value), 2) + 0.0:.2f}"
 
 
-def entries(matrix: np.ndarray) -> list[list[str]]:
-    """Return the numbers of a matrix (m, n) as texts; a nought that is exact is written as one."""
-    return [["0" if x == 0.0 else fixed(x) for x in row] for row in matrix]
+def entries(matrix: np.ndarray, bare: tuple[float, ...] = (0.0,)) -> list[list[str]]:
+    """Return the numbers of a matrix (m, n) as texts; those that are exactly a bare one have no decimals."""
+    return [[f"{abs(x):.0f}" if x in bare else fixed(x) for x in row] for row in matrix]
 
 
-def width(matrix: np.ndarray) -> float:
+def width(matrix: np.ndarray, bare: tuple[float, ...] = (0.0,)) -> float:
     """Return how wide a matrix (m, n) is with its brackets, in page units."""
-    columns = _columns(matrix)
+    columns = _columns(matrix, bare)
     return sum(columns) + _COLUMNS * (len(columns) - 1) + 2.0 * _INNER
 
 
-def matrix(matrix: np.ndarray, left: float, middle: float, color: str = style.INK) -> list[scene.Record]:
+def corner(
+    matrix: np.ndarray, left: float, middle: float, count: int, bare: tuple[float, ...] = (0.0,)
+) -> tuple[float, float, float, float]:
+    """Return left, low, right, high of the first rows and columns, so many of each, of a matrix (m, n)."""
+    columns = _columns(matrix, bare)[:count]
+    start, high = left + _INNER, middle + _ROW * 0.5 * len(matrix)
+    return start, high - _ROW * count, start + sum(columns) + _COLUMNS * (count - 1), high
+
+
+def matrix(
+    matrix: np.ndarray,
+    left: float,
+    middle: float,
+    color: str = style.INK,
+    bare: tuple[float, ...] = (0.0,),
+) -> list[scene.Record]:
     """Return a matrix (m, n) in brackets.
 
     Parameters
@@ -38,8 +53,10 @@ def matrix(matrix: np.ndarray, left: float, middle: float, color: str = style.IN
     middle : float
         The height of its middle.
     color : str
+    bare : tuple of float
+        Numbers, none of them negative, that have no decimals where they are exact.
     """
-    texts, columns, right = entries(matrix), _columns(matrix), left + width(matrix)
+    texts, columns, right = entries(matrix, bare), _columns(matrix, bare), left + width(matrix, bare)
     rows = len(texts)
     records: list[scene.Record] = []
     x = left + _INNER
@@ -61,9 +78,9 @@ def matrix(matrix: np.ndarray, left: float, middle: float, color: str = style.IN
     return records
 
 
-def _columns(matrix: np.ndarray) -> list[float]:
+def _columns(matrix: np.ndarray, bare: tuple[float, ...]) -> list[float]:
     """How wide the columns are."""
-    texts = entries(matrix)
+    texts = entries(matrix, bare)
     return [max(_width(row[j]) for row in texts) for j in range(len(texts[0]))]
 
 

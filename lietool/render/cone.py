@@ -12,6 +12,8 @@ from lietool.render.globe import joined
 
 # Of the stems of the ellipses, over the height of the view.
 STEM = 0.045
+# From how far above the front a section is seen, so that it is a cone still.
+_ABOVE = 0.17
 
 
 def drawn(S: np.ndarray) -> np.ndarray:
@@ -58,6 +60,36 @@ def glass(camera: Camera, height: float) -> list[scene.Record]:
         scene.Label(
             r"$\mathrm{det} = 0$", 0.5 * right[1], style.GROUP_TEXT, style.SMALL_TEXT, (16.0, -6.0), "lt"
         ),
+    ]
+
+
+def before(across: np.ndarray) -> tuple[float, float, float]:
+    """Return the direction from which a section, across (2,) from the axis, is seen almost from the front."""
+    return (float(across[1]), -float(across[0]), _ABOVE)
+
+
+def section(camera: Camera, across: np.ndarray, height: float, color: str) -> list[scene.Record]:
+    """Return the part in the cone of a plane through its axis: its area, and the two walls where det = 0.
+
+    Parameters
+    ----------
+    camera : Camera
+        From which it is seen.
+    across : ndarray, shape (2,)
+        A unit vector in the plane, at right angles to the axis.
+    height : float
+        Of the cone.
+    color : str
+        Of the area.
+    """
+    right, left = (height * np.array([*(side * across), 1.0]) for side in (1.0, -1.0))
+    tip = np.zeros(3)
+    # The area a little behind what lies and stands in it, which it would hide.
+    behind = np.stack([tip, right, left]) - 0.08 * height * camera.axes[2]
+    return [
+        scene.Surface(behind, [[0, 1, 2]], color, material="flat", alpha=0.10),
+        scene.Lines(np.stack([left, tip, right]), style.GROUP_TEXT, style.CURVE),
+        scene.Lines(np.stack([left, right]), style.GROUP_TEXT, style.HAIR, 0.7),
     ]
 
 

@@ -73,7 +73,7 @@ class TestWays:
         values, vectors = np.linalg.eigh(numbers["S"])
         angle = np.deg2rad(numbers["angle"])
         for k, A in enumerate(numbers["logexp_steps"]):
-            t = k / 3.0
+            t = k / (len(numbers["logexp_steps"]) - 1)
             c, s = np.cos(t * angle), np.sin(t * angle)
             expected = np.array([[c, -s], [s, c]]) @ vectors @ np.diag(values**t) @ vectors.T
             assert np.abs(A - expected).max() < 1e-14
@@ -172,6 +172,42 @@ class TestParts:
             for t in (0.3, 1.0):
                 assert np.abs(by_series(t * L) - triangle.matrix_log(given.A, t)).max() < 1e-12
 
+    @pytest.mark.parametrize("method", ["arap", "logexp"])
+    def test_the_stretches_lie_in_the_section_of_the_cone(self, method):
+        from lietool.figures.ch5 import _triangle_path as path
+
+        from lietool.render import cone
+
+        given = mapped(*load().plate_params("B5.2")["target"])
+        at = cone.drawn(given.stretches(method, np.linspace(-1.0, 2.0, 31)))
+        across = path._across(given.S)
+        assert np.abs(at[:, :2] @ [-across[1], across[0]]).max() < 1e-12
+        # Beyond its wall, |across| = height, the determinant is negative.
+        outside = np.abs(at[:, :2] @ across) > at[:, 2]
+        assert outside.any() == (method == "arap")
+
+    def test_rows_fill_their_part_of_the_page_and_do_not_overlap(self):
+        from lietool.figures.ch5 import _triangle_shape as shapes
+
+        heights = np.array([1.0, 2.0, 0.5])
+        for most in (np.inf, 10.0):
+            scale, middles = shapes.stack(heights, 100.0, 800.0, 20.0, most)
+            assert scale == pytest.approx(min(660.0 / 3.5, most))
+            upper, lower = middles + scale * heights / 2.0, middles - scale * heights / 2.0
+            assert upper[0] <= 800.0 + 1e-9 and lower[-1] >= 100.0 - 1e-9
+            assert (lower[:-1] - upper[1:] >= 20.0 - 1e-9).all()
+            assert 800.0 - upper[0] == pytest.approx(lower[-1] - 100.0)
+
+    def test_the_arrow_begins_and_ends_outside_the_triangles(self):
+        from lietool.figures.ch5 import _triangle_affine as affine
+
+        p, q = (np.reshape(load().plate_params("B5.1b")[name], (3, 2)) for name in ("source", "target"))
+        ends = affine._between(p, q, 0.0)
+        for corners, end in zip((p, q), ends, strict=True):
+            weights = np.linalg.solve(np.vstack([corners.T, np.ones(3)]), [*end, 1.0])
+            assert weights.min() == pytest.approx(0.0, abs=1e-12)
+        assert affine._between(p, p, 0.0) is None
+
     def test_the_letter_stays_in_its_triangle(self):
         from lietool.figures.ch5 import _triangle_shape as shapes
 
@@ -183,13 +219,13 @@ class TestParts:
             assert weights.min() > 0.0
 
     def test_the_red_part_is_where_no_logarithm_is(self):
-        from lietool.figures.ch5 import _triangle_compare as comparison
+        from lietool.figures.ch5 import _triangle_chart as charts
 
         rng = np.random.default_rng(5)
         for A in rng.standard_normal((200, 2, 2)):
             if np.linalg.det(A) > 0.0:
                 a, b = (np.abs(x) for x in triangle.coordinates(A))
-                inside = comparison.without_log(triangle.principal_angle(A), b / a)
+                inside = charts.without_log(triangle.principal_angle(A), b / a)
                 assert inside != triangle.has_real_log(A)
 
 
