@@ -209,8 +209,8 @@ def global_interp(
         Literal["none", "frobenius", "similarity", "both-angles", "direction"],
         Param(
             "a second row, by this energy with consistent angles; or E^F with the same angles above, and "
-            "with consistent ones below; or E^R and a share of E^F, barycentre thrown, and only the direction "
-            "of an edge given",
+            "with consistent ones below; or E^R and a share of E^F, barycentre thrown, only the direction of "
+            "an edge given",
             only=("stage", "frames"),
         ),
     ] = "none",
