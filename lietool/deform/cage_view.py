@@ -161,6 +161,14 @@ def chunks(cage: Facets, points: Array) -> Iterator[tuple[slice, View]]:
         yield part, view(cage, points[part] - cage.middle)
 
 
+def solid_angles(cage: Facets, seen: View) -> Array:
+    """Return the solid angles of the faces (c, m), positive from inside (Van Oosterom and Strackee 1983)."""
+    r = seen.radius
+    dots = seen.start * seen.end + seen.rho * seen.rho
+    low = r[0] * r[1] * r[2] + np.sum(dots * r, axis=0)
+    return 2.0 * np.arctan2(2.0 * seen.h * cage.area, low)
+
+
 @dataclass(frozen=True, eq=False)
 class Nearest:
     """The nearest points of a cage, for those points of a chunk that are near to it.

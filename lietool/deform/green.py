@@ -145,7 +145,7 @@ def _dot(a: Array, b: Array) -> Array:
 def _coordinates(cage: cage_view.Facets, seen: cage_view.View) -> tuple[Array, Array, Mask]:
     """Return phi (c, k), psi (c, m) as the integrals are inside and on the cage, and which are outside."""
     h, d = seen.h, seen.d
-    omega, log = _solid_angle(cage, seen), _logarithm(seen)
+    omega, log = cage_view.solid_angles(cage, seen), _logarithm(seen)
     turn = np.einsum("iem,ecm->icm", cage.gram, log)
     corners = (d * omega + h * turn) / (4.0 * np.pi * cage.height[:, None])
     psi = (np.sum(d * log, axis=0) - h * omega) / (4.0 * np.pi)
@@ -157,14 +157,6 @@ def _coordinates(cage: cage_view.Facets, seen: cage_view.View) -> tuple[Array, A
     missing = rounds[near.row] - phi[near.row].sum(axis=1)
     np.add.at(phi, (near.row[:, None], cage.faces[near.face]), near.share * missing[:, None])
     return phi, psi, rounds < 0.5
-
-
-def _solid_angle(cage: cage_view.Facets, seen: cage_view.View) -> Array:
-    """Return the solid angle of each face, positive from its inner side (Van Oosterom and Strackee 1983)."""
-    r = seen.radius
-    dots = seen.start * seen.end + seen.rho * seen.rho
-    low = r[0] * r[1] * r[2] + np.sum(dots * r, axis=0)
-    return 2.0 * np.arctan2(2.0 * seen.h * cage.area, low)
 
 
 def _logarithm(seen: cage_view.View) -> Array:

@@ -203,4 +203,6 @@ def _thin(cage: cage_view.Facets, seen: cage_view.View, k: int, place: tuple[Ind
     product = np.sin(mean + 0.5 * theta[a, every]) * np.sin(mean - 0.5 * theta[a, every])
     g = (cage.area[face] / (r_a * r_b * r_k)) ** 2 / (product * np.sin(np.maximum(far, cage_view.TINY)))
     flat = np.where(np.abs(h) < cage_view.TINY, cage_view.TINY, h)
-    return np.where(far > near, np.arcsin(np.minimum(h * h * g, 1.0)), near) / flat
+    alpha = np.where(far > near, np.arcsin(np.minimum(h * h * g, 1.0)), near)
+    # In the plane itself the face has no solid angle, also on the line of an edge, where near is anything.
+    return np.where(np.abs(h) < cage_view.TINY, 0.0, alpha / flat)
