@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lietool.deform import adjacency, cage_checks, cage_frames, cage_weights, move, orientation, ways
 from lietool.deform.weights import Weights
-from lietool.lie import polar
+from lietool.lie import matrix_checks, polar
 from lietool.mesh import topology
 
 Array = NDArray[np.float64]
@@ -182,12 +182,28 @@ def pose(
     if policy is None and way is ways.LINEAR:
         oriented = orientation.Oriented(B, np.zeros(len(B), dtype=bool))
     else:
+        if policy is None or policy is orientation.refuse:
+            _oriented(prepared.elements, B)
         oriented = (policy or orientation.refuse)(B)
     B, found = oriented.A, None
     if way.whole_turns and lift is not None:
         found = lift(polar.rotation(B[:, :3, :3]), prepared.elements.pairs)
     encoded = move.encode(way, B, None if found is None else found.vectors)
     return Pose(move.about(B, -prepared.anchored.origins), encoded, oriented.replaced, found)
+
+
+def _oriented(elements: cage_frames.Elements, B: Array) -> None:
+    """Refuse maps that turn inside out or flatten, by the elements' names."""
+    d = np.linalg.svd(B[:, :3, :3], compute_uv=False)
+    bad = ~(d[:, 2] > matrix_checks.UNDECIDED * d[:, 0]) | ~(np.linalg.det(B[:, :3, :3]) > 0.0)
+    if bad.any():
+        k = int(np.argmax(bad))
+        name = f"element {k} of {elements.name}, vertices {elements.ends[k].tolist()}"
+        got = f"{int(bad.sum())} of {len(B)}, first {name}"
+        remedy = "Mend the pose, take the policy orientation.nearest"
+        remedy += ", or elements of faces or edges." if elements.name == "corners" else "."
+        must = "a pose in which no tetrahedron flattens or turns inside out"
+        topology.fail("cage.pose", "V", must, got, remedy)
 
 
 def solve(

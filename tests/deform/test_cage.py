@@ -288,7 +288,10 @@ def test_a_face_that_collapses_is_refused_or_replaced_and_counted(kind):
     prepared = cage.prepare(x, V, F, kind)
     now = V.copy()
     now[0] = now[1]
-    with pytest.raises(ValueError, match=r"^orientation\.refuse: A must be [^\n]*det > 0; got [^\n]*$"):
+    with pytest.raises(
+        ValueError,
+        match=r"^cage\.pose: V must be a pose in [^\n]*; got \d of \d+, first element \d+ of [^\n]*$",
+    ):
         cage.solve(prepared, now)
     if kind is cage_frames.edges:
         # Both faces of the edge are gone, and with them its normal: nothing is left to be near to.
@@ -394,3 +397,16 @@ def test_a_vertex_whose_normal_lies_in_its_face_has_no_corner():
 def test_no_points_are_moved_nowhere():
     V, F = box()
     assert cage.solve(cage.prepare(np.zeros((0, 3)), V, F), V).points.shape == (0, 3)
+
+
+def test_a_corner_may_turn_inside_out_and_is_named():
+    V, F = box()
+    prepared = cage.prepare([[0.2, 0.2, 0.2]], V, F, cage_frames.corners)
+    now = V.copy()
+    now[7] = [-0.5, 0.5, 0.9]
+    with pytest.raises(
+        ValueError, match=r"^cage\.pose: V must be [^\n]* of corners, vertices \[[^\n]*edges\.$"
+    ):
+        cage.solve(prepared, now)
+    done = cage.solve(prepared, now, policy=orientation.nearest)
+    assert done.pose.replaced.any() and np.isfinite(done.points).all()
