@@ -1,4 +1,4 @@
-"""Records turned into arrays for the graphics library: triangles, segments, balls, each with its depth."""
+"""Records turned into arrays for the graphics library: triangles, segments, balls, images, with depths."""
 
 from dataclasses import dataclass
 from functools import singledispatch
@@ -7,11 +7,13 @@ import numpy as np
 
 from lietool.render import solids, style
 from lietool.render.camera import Box, Camera, Page, project
-from lietool.render.scene import Arrow, Frame, Label, Lines, Points, Record, Surface, Tube
+from lietool.render.scene import Arrow, Frame, Image, Label, Lines, Points, Record, Surface, Tube
 from lietool.render.theme import BOOK, Theme
 
 # More than any page has pixels; a dash that is finer would only take time.
 _MOST_DASHES = 20000
+# Every OpenGL has textures of this size.
+_LARGEST_IMAGE = 4096
 
 MATERIALS = {"flat": 0.0, "matte": 1.0, "glass": 2.0, "soft": 3.0}
 
@@ -22,19 +24,25 @@ class Batch:
 
     Parameters
     ----------
-    kind : {"surface", "glass far", "glass near", "lines", "points"}
+    kind : {"surface", "glass far", "glass near", "lines", "points", "image"}
     data : ndarray of float32, shape (n, ...)
-        What the shader reads for each triangle (three vertices), segment or ball.
+        What the shader reads for each triangle (three vertices), segment, ball or image.
     depth : ndarray, shape (n,)
         By which translucent elements are sorted, farthest first.
     opaque : bool
         Nothing behind it shows, so that it may be drawn first and fill the depth buffer.
+    texels : ndarray of float16, shape (h, w, 4), optional
+        Of an image: its pixels in linear light, the lowest row first.
+    smooth : bool
+        Whether an image is smooth between them.
     """
 
     kind: str
     data: np.ndarray
     depth: np.ndarray
     opaque: bool = False
+    texels: np.ndarray | None = None
+    smooth: bool = True
 
 
 @dataclass(frozen=True)
@@ -184,12 +192,32 @@ def _(record: Frame, lens: Lens) -> list[Batch]:
     return found
 
 
+@batches.register
+def _(record: Image, lens: Lens) -> list[Batch]:
+    pixels = finite(record.pixels, "Image.pixels")
+    if pixels.ndim == 2:
+        pixels = np.repeat(pixels[:, :, None], 3, axis=2)
+    if pixels.ndim != 3 or pixels.shape[2] != 3 or not pixels.size or max(pixels.shape) > _LARGEST_IMAGE:
+        must = f"(h, w) or (h, w, 3), at most {_LARGEST_IMAGE} each way"
+        raise ValueError(f"draw.render: Image.pixels must be of shape {must}; got {np.shape(record.pixels)}")
+    sides = [finite(getattr(record, name), f"Image.{name}") for name in ("corner", "across", "up")]
+    levels = np.clip(pixels[::-1], 0.0, 1.0)
+    light = np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
+    texels = np.concatenate([light, np.ones((*light.shape[:2], 1))], axis=2).astype("f2")
+    middle = sides[0] + 0.5 * (sides[1] + sides[2])
+    data = np.concatenate(sides)[None].astype("f4")
+    return [Batch("image", data, lens.depth(middle[None]), True, texels, record.smooth)]
+
+
 def extent(kind: str, data: np.ndarray) -> tuple[np.ndarray, float]:
     """Return the points (n, 3) of a batch's rows, and how far beyond them it draws, in pixels."""
     if kind == "lines":
         return data[:, 3:9].reshape(-1, 3), float(data[:, 20].max())
     if kind == "points":
         return data[:, :3], float(data[:, 11].max())
+    if kind == "image":
+        corner, across, up = data[:, :3], data[:, 3:6], data[:, 6:9]
+        return np.concatenate([corner, corner + across, corner + up, corner + across + up]), 0.0
     return data[..., :3].reshape(-1, 3), 0.0
 
 

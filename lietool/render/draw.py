@@ -6,7 +6,7 @@ the mean of its samples, encoded as sRGB; labels last.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 
@@ -180,7 +180,7 @@ class _Prepared:
     view: View
     box: Box
     opaque: list[Batch]
-    runs: list[tuple[str, np.ndarray]]
+    runs: list[Batch]
 
 
 def _prepare(view: View, sheet: _Sheet) -> _Prepared:
@@ -197,19 +197,22 @@ def _prepare(view: View, sheet: _Sheet) -> _Prepared:
     return _Prepared(view, box, opaque, list(_sorted_runs(rest, 0.0 if flat else view.camera.height)))
 
 
-def _sorted_runs(rest: list[Batch], height: float) -> Iterator[tuple[str, np.ndarray]]:
+def _sorted_runs(rest: list[Batch], height: float) -> Iterator[Batch]:
     """Yield what can be drawn at once, far to near; on a page (height 0) in the order of the records."""
-    kinds = list(dict.fromkeys(batch.kind for batch in rest))
-    if not kinds:
+    if not rest:
         return
-    rows = {kind: np.concatenate([b.data for b in rest if b.kind == kind]) for kind in kinds}
-    before = dict.fromkeys(kinds, 0)
+    # Images have a texture each, and cannot be drawn together.
+    keys = [(b.kind, 0 if b.texels is None else id(b.texels)) for b in rest]
+    kinds = list(dict.fromkeys(keys))
+    groups = [[b for b, key in zip(rest, keys, strict=True) if key == kind] for kind in kinds]
+    rows = [np.concatenate([b.data for b in group]) for group in groups]
+    before = [0] * len(kinds)
     kind_of, row_of = [], []
-    for batch in rest:
-        count = len(batch.data)
-        kind_of.append(np.full(count, kinds.index(batch.kind)))
-        row_of.append(before[batch.kind] + np.arange(count))
-        before[batch.kind] += count
+    for batch, key in zip(rest, keys, strict=True):
+        count, which = len(batch.data), kinds.index(key)
+        kind_of.append(np.full(count, which))
+        row_of.append(before[which] + np.arange(count))
+        before[which] += count
     kind, row = np.concatenate(kind_of), np.concatenate(row_of)
     if height:
         # Rounded, so that a difference in the last bit does not change what overlaps what.
@@ -218,15 +221,16 @@ def _sorted_runs(rest: list[Batch], height: float) -> Iterator[tuple[str, np.nda
         kind, row = kind[order], row[order]
     ends = np.flatnonzero(np.diff(kind, append=-1)) + 1
     for first, last in pairwise((0, *ends)):
-        name = kinds[kind[first]]
-        yield name, rows[name][row[first:last]]
+        which = kind[first]
+        data, depth = rows[which][row[first:last]], np.zeros(last - first)
+        yield replace(groups[which][0], data=data, depth=depth)
 
 
 def _reach(prepared: _Prepared, sheet: _Sheet) -> tuple[int, int, int, int]:
     """Left, lower edge, width and height in pixels of the part of the sheet that a view draws on."""
     low, high = np.array(sheet.size, float), np.zeros(2)
-    for kind, data in [*((batch.kind, batch.data) for batch in prepared.opaque), *prepared.runs]:
-        points, margin = extent(kind, data)
+    for batch in [*prepared.opaque, *prepared.runs]:
+        points, margin = extent(batch.kind, batch.data)
         seen = project(prepared.view.camera, prepared.box, points)[:, :2] * sheet.unit + sheet.corner
         # And what antialiasing and the shift of the samples may add.
         low = np.minimum(low, seen.min(axis=0) - margin - 2.0)
@@ -279,13 +283,13 @@ def _draw_view(
     gl.enable_only(moderngl.DEPTH_TEST)
     gl.depth_func = "<="
     for batch in prepared.opaque:
-        passes.draw(gl, batch.kind, batch.data, uniforms, flat)
+        passes.draw(gl, batch, uniforms, flat)
     gl.enable_only(moderngl.BLEND if flat else moderngl.BLEND | moderngl.DEPTH_TEST)
     gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
     samples.depth_mask = False
     samples.use()
-    for kind, data in prepared.runs:
-        passes.draw(gl, kind, data, uniforms, flat)
+    for batch in prepared.runs:
+        passes.draw(gl, batch, uniforms, flat)
     samples.depth_mask = True
 
 

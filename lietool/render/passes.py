@@ -9,6 +9,7 @@ import moderngl
 import numpy as np
 
 from lietool.render import context
+from lietool.render.batches import Batch
 
 _LAYOUT = {
     "surface": ("3f 3f 4f 1f", ("in_position", "in_normal", "in_color", "in_material")),
@@ -20,6 +21,7 @@ _LAYOUT = {
         "3f 4f 4f 1f 1f 1f/i",
         ("in_position", "in_color", "in_rim", "in_radius", "in_shaded", "in_lift"),
     ),
+    "image": ("3f 3f 3f/i", ("in_corner", "in_across", "in_up")),
 }
 
 
@@ -59,10 +61,9 @@ def clear_depth(samples: moderngl.Framebuffer) -> None:
     samples.use()
 
 
-def draw(
-    gl: moderngl.Context, kind: str, data: np.ndarray, uniforms: Mapping[str, bytes], flat: bool
-) -> None:
-    """Draw the rows of a batch; `kind` and `data` as of `batches.Batch`, on a page where `flat`."""
+def draw(gl: moderngl.Context, batch: Batch, uniforms: Mapping[str, bytes], flat: bool) -> None:
+    """Draw the rows of a batch, on a page where `flat`."""
+    kind, data = batch.kind, batch.data
     name = "surface" if kind.startswith("glass") else kind
     shader = program(name)
     for key, value in uniforms.items():
@@ -71,6 +72,7 @@ def draw(
     if name == "surface":
         shader["side"] = {"glass far": -1.0, "glass near": 1.0}.get(kind, 0.0)
         shader["lens"] = not flat
+    texture = None if batch.texels is None else _texture(gl, batch.texels, batch.smooth)
     layout, attributes = _LAYOUT[name]
     buffer = gl.buffer(np.ascontiguousarray(data, "f4"))
     array = gl.vertex_array(shader, [(buffer, layout, *attributes)])
@@ -80,6 +82,17 @@ def draw(
         array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=len(data))
     array.release()
     buffer.release()
+    if texture:
+        texture.release()
+
+
+def _texture(gl: moderngl.Context, texels: np.ndarray, smooth: bool) -> moderngl.Texture:
+    height, width = texels.shape[:2]
+    texture = gl.texture((width, height), 4, np.ascontiguousarray(texels, "f2"), dtype="f2")
+    texture.filter = (moderngl.LINEAR, moderngl.LINEAR) if smooth else (moderngl.NEAREST, moderngl.NEAREST)
+    texture.repeat_x = texture.repeat_y = False
+    texture.use(0)
+    return texture
 
 
 def resolve(gl: moderngl.Context, target: Target, per_side: int) -> np.ndarray:

@@ -10,7 +10,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from lietool.render.camera import Box, Camera, Page, project
-from lietool.render.scene import Arrow, Frame, Label, Lines, Picture, Points, Record, Surface, Tube, View
+from lietool.render.scene import (
+    Arrow,
+    Frame,
+    Image,
+    Label,
+    Lines,
+    Picture,
+    Points,
+    Record,
+    Surface,
+    Tube,
+    View,
+)
 
 # In page units: what stays free around a text, and what stays free at the edges of the page.
 _MARGIN, _EDGE = 5.0, 16.0
@@ -226,6 +238,9 @@ def _segments(record: Record, view: View, box: Box) -> tuple[np.ndarray, np.ndar
         case Points(positions=positions, radius=radius):
             at = np.asarray(positions, float).reshape(-1, 3)
             ends, half = np.stack([at, at], axis=1), radius
+        case Image(corner=corner, across=across, up=up):
+            one, x, y = (np.asarray(side, float) for side in (corner, across, up))
+            ends = _pairs(np.stack([one, one + x, one + x + y, one + y, one]))
         case Surface(alpha=alpha):
             ends, weight = _outline(record, camera), 0.3 + 0.7 * alpha
     if not len(ends):

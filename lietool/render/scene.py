@@ -144,6 +144,30 @@ class Frame:
 
 
 @dataclass(frozen=True, eq=False)
+class Image:
+    """A photograph or other image on a parallelogram, opaque, and the same in every theme.
+
+    Parameters
+    ----------
+    pixels : array_like, shape (h, w) or (h, w, 3)
+        Grey, or red, green and blue, as encoded in sRGB from 0 to 1; the upper row first. What is beyond is
+        drawn as 0 or 1.
+    corner : array_like, shape (3,)
+        Where its lower left corner is.
+    across, up : array_like, shape (3,)
+        From there to the lower right and to the upper left corner.
+    smooth : bool
+        Between the middles of pixels; else each pixel is a square.
+    """
+
+    pixels: ArrayLike
+    corner: ArrayLike
+    across: ArrayLike
+    up: ArrayLike
+    smooth: bool = True
+
+
+@dataclass(frozen=True, eq=False)
 class Label:
     """Mathematical text, placed by its anchor.
 
@@ -173,7 +197,7 @@ class Label:
     room: float = 0.0
 
 
-Record = Surface | Lines | Points | Arrow | Tube | Frame | Label
+Record = Surface | Lines | Points | Arrow | Tube | Frame | Image | Label
 
 
 @dataclass(frozen=True, eq=False)
