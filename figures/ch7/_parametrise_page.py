@@ -1,0 +1,297 @@
+"""The page of figure 7.1: the three steps of phi above, the three parameters below."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lietool.lie import se3, so3
+from lietool.render import letter as shape
+from lietool.render import marks, mesh_look, scene, solids, style
+from lietool.render.camera import Camera, around
+from lietool.render.globe import globe, joined
+from lietool.render.mesh_page import each, legend, titles
+
+_DIRECTION = (1.0, 0.5, 0.34)
+_COLUMNS = ((190.0, 276.0), (476.0, 312.0), (798.0, 366.0))
+_UPPER = tuple((x, 466.0, w, 350.0) for x, w in _COLUMNS)
+_LOWER = tuple((x, 146.0, w, 262.0) for x, w in _COLUMNS)
+_SIDE, _ROWS = 98.0, (640.0, 268.0)
+_BALL, _SMALL = np.pi, style.SMALL_TEXT
+# Half of the axis of rotation, in heights of the letter; the axes of space beside l; where its ball has pi.
+_AXIS, _SPACE, _RIM = 0.95, 0.9, 200
+# Shorter vectors are none.
+_NOTHING = 1e-9
+_LETTERS = {
+    "rest": (style.BEFORE_EDGE, style.GREYS[1], style.BEFORE),
+    "between": (style.BETWEEN_EDGE, style.GREYS[1], style.BETWEEN),
+    "after": (style.ARC, style.GREYS[1], style.AFTER),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """The parameters x, l = shift, Y = Q diag(logs) Q^T, their image A, and what psi says of it."""
+
+    map: str
+    x: np.ndarray
+    shift: np.ndarray
+    Q: np.ndarray
+    logs: np.ndarray
+    A: np.ndarray
+    back_x: np.ndarray
+    back_shift: np.ndarray
+    same: bool
+
+    @property
+    def S(self) -> np.ndarray:
+        """exp(Y)"""
+        return (self.Q * np.exp(self.logs)) @ self.Q.T
+
+    @property
+    def R(self) -> np.ndarray:
+        """The rotation of A."""
+        return so3.exp(self.x)
+
+    @property
+    def d(self) -> np.ndarray:
+        """The translation of A."""
+        return self.A[:3, 3]
+
+    def way(self, n: int = 121) -> np.ndarray:
+        """The way (n, 3) of the origin to d: of the screw motion, or straight."""
+        t = np.linspace(0.0, 1.0, n)[:, None]
+        if self.map == "phi_so":
+            return t * self.shift
+        return se3.exp(t * np.concatenate([self.x, self.shift]))[:, :3, 3]
+
+
+def unit(name: str, v: tuple[float, float, float]) -> np.ndarray:
+    """Return a vector brought to length 1; ValueError if it has none."""
+    w = np.asarray(v, float)
+    size = float(np.abs(w).max())
+    if not size > 1e-150:
+        raise ValueError(f"parametrise: {name} must be different from 0; got {v}. Give a direction")
+    w = w / size
+    return w / np.linalg.norm(w)
+
+
+def picture(s: Shown) -> scene.Picture:
+    """Return the page."""
+    views = [*_steps(s), *_parameters(s), scene.View((*_texts(s), *_maps(s)))]
+    return scene.Picture(tuple(views))
+
+
+def _steps(s: Shown) -> list[scene.View]:
+    """The letter before and after each step, all in one scale."""
+    corners = shape.solid()[0]
+    seen = [
+        [corners, corners @ s.S.T],
+        [corners @ s.S.T, corners @ (s.R @ s.S).T, _AXIS * _axis(s), -_AXIS * _axis(s)],
+        [corners @ (s.R @ s.S).T, corners @ s.A[:3, :3].T + s.d, s.way(), s.shift[None]],
+    ]
+    cameras = each([np.concatenate(points) for points in seen], _DIRECTION, _UPPER, 1.1)
+    zero, one = np.zeros(3), np.eye(3)
+    records = [
+        [*_ghost(one, zero), *_letter(s.S, zero, "between")],
+        [*_ghost(s.S, zero), *_letter(s.R @ s.S, zero, "between"), *_turn(s, cameras[1])],
+        [*_ghost(s.R @ s.S, zero), *_letter(s.R @ s.S, s.d, "after")],
+    ]
+    views = [
+        scene.View(tuple(rows), camera, box)
+        for rows, camera, box in zip(records, cameras, _UPPER, strict=True)
+    ]
+    # The ends of the way lie inside of the letters.
+    return [*views, scene.View(tuple(_moved(s, cameras[2])), cameras[2], _UPPER[2])]
+
+
+def _axis(s: Shown) -> np.ndarray:
+    """The unit vector along x as a row (1, 3); z where there is no rotation."""
+    theta = float(np.linalg.norm(s.x))
+    return (s.x / theta if theta > _NOTHING else np.array([0.0, 0.0, 1.0]))[None]
+
+
+def _letter(M: np.ndarray, at: np.ndarray, look: str) -> list[scene.Record]:
+    return marks.letter(M, at, colors=_LETTERS[look])
+
+
+def _ghost(M: np.ndarray, at: np.ndarray) -> list[scene.Record]:
+    """The letter as its edges alone."""
+    corners, _, _ = shape.solid()
+    placed = corners @ M.T + at
+    n = len(placed) // 2
+    rim = np.append(np.arange(n), 0)
+    edges = joined(placed[rows] for rows in (rim, rim + n, *np.arange(2 * n).reshape(2, n).T))
+    return [scene.Lines(edges, style.BEFORE_EDGE, style.HAIR)]
+
+
+def _turn(s: Shown, camera: Camera) -> list[scene.Record]:
+    """The axis, and the turn about it where it leaves the letter towards the viewer."""
+    if np.linalg.norm(s.x) <= _NOTHING:
+        return []
+    u = _axis(s)[0]
+    near = u if u @ camera.axes[2] >= 0.0 else -u
+    line = scene.Lines([-_AXIS * u, _AXIS * u], style.ALGEBRA, style.THIN, dash=(9.0, 6.0))
+    return [line, *mesh_look.turn(0.78 * near, s.x, 0.3, camera, color=style.ALGEBRA_TEXT, room=90.0)]
+
+
+def _moved(s: Shown, camera: Camera) -> list[scene.Record]:
+    """The way of the origin to d, and l, along which it sets out."""
+    way = s.way()
+    records: list[scene.Record] = [scene.Points([np.zeros(3)], style.INK, 6.0)]
+    if s.map == "phi_se" and np.linalg.norm(s.shift) > _NOTHING:
+        records.append(scene.Arrow(np.zeros(3), s.shift, style.ALGEBRA, 0.016))
+        records.append(
+            marks.beyond(
+                r"$\mathbf{l}$", s.shift, s.shift, camera, color=style.ALGEBRA_TEXT, gap=24.0, room=60.0
+            )
+        )
+    if np.linalg.norm(s.d) > _NOTHING:
+        records += marks.curved_arrow(way, style.AFTER_EDGE, 0.02)
+        name = r"$\mathbf{d}$" if s.map == "phi_se" else r"$\mathbf{l}$"
+        records.append(marks.beyond(name, way[-1], s.d, camera, color=style.ARC_TEXT, gap=30.0, room=70.0))
+    return records
+
+
+def _parameters(s: Shown) -> list[scene.View]:
+    """The three parameters."""
+    factor = max(float(np.exp(s.logs.max())), 1.0)
+    seen = (
+        [factor * s.Q.T, -factor * s.Q.T, np.eye(3), -np.eye(3)],
+        [_BALL * np.eye(3), -_BALL * np.eye(3), s.x[None], s.back_x[None]],
+        [np.zeros((1, 3)), s.shift[None], s.back_shift[None], _SPACE * np.eye(3)],
+    )
+    views = []
+    for points, build, box in zip(seen, (_stretch, _vector, _translation), _LOWER, strict=True):
+        camera = around(np.concatenate(points), _DIRECTION, box, 1.22)
+        views += [scene.View(tuple(records), camera, box) for records in build(s, camera)]
+    return views
+
+
+def _stretch(s: Shown, camera: Camera) -> list[list[scene.Record]]:
+    """The image of the unit ball under exp(Y); over it the arrows from the ball to it, along the axes."""
+    factors = np.exp(s.logs)
+    V, F, N = solids.sphere(1.0, rings=40)
+    normals = (N / factors) @ s.Q.T
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    egg = (V * factors) @ s.Q.T
+    ball = scene.Lines(
+        camera.sphere_outline(np.zeros(3), 1.0), style.BEFORE_EDGE, style.THIN, dash=(7.0, 6.0)
+    )
+    over: list[scene.Record] = [ball]
+    for q, log in zip(s.Q.T, s.logs, strict=True):
+        over.append(scene.Lines([-q, q], style.ALGEBRA, style.HAIR))
+        for side in (q, -q) if abs(log) > _NOTHING else ():
+            over.append(scene.Arrow(side, np.exp(log) * side, style.ALGEBRA, 0.011 * camera.height, 2.2))
+        # A name stands at the nearer end of its axis.
+        near = q if q @ camera.axes[2] >= 0.0 else -q
+        end = max(float(np.exp(log)), 1.0) * near
+        text = f"${_signed(float(log))}$"
+        over.append(
+            marks.beyond(text, end, near, camera, color=style.ALGEBRA_TEXT, size=_SMALL, gap=36.0, room=80.0)
+        )
+    return [[scene.Surface(egg, F, style.BETWEEN, normals, "soft")], over]
+
+
+def _vector(s: Shown, camera: Camera) -> list[list[scene.Record]]:
+    """The rotation vector, and the ball of the principal ones."""
+    over: list[scene.Record] = [scene.Points([np.zeros(3)], style.INK, 5.0)]
+    over += _given(s.x, r"$\mathbf{x}$", camera)
+    if not s.same:
+        over += _answered(s.back_x, s.x, r"$\mathbf{x}'$", camera)
+    left = camera.sphere_outline(np.zeros(3), _BALL)[_RIM]
+    over.append(marks.beyond(r"$\pi$", left, left, camera, color=style.GLASS_EDGE, size=_SMALL, gap=22.0))
+    return [globe(camera, _BALL, alpha=0.6), over]
+
+
+def _translation(s: Shown, camera: Camera) -> list[list[scene.Record]]:
+    """The translation part, beside the axes of space."""
+    records: list[scene.Record] = []
+    for axis, name, color, text in zip(np.eye(3), "xyz", style.AXES, style.AXES_TEXT, strict=True):
+        records.append(scene.Lines([np.zeros(3), _SPACE * axis], color, style.EDGE))
+        records.append(
+            marks.beyond(
+                f"${name}$", _SPACE * axis, axis, camera, color=text, size=_SMALL, gap=20.0, room=50.0
+            )
+        )
+    records += [scene.Points([np.zeros(3)], style.INK, 5.0), *_given(s.shift, r"$\mathbf{l}$", camera)]
+    if not s.same:
+        records += _answered(s.back_shift, s.shift, r"$\mathbf{l}'$", camera)
+    return [records]
+
+
+def _given(v: np.ndarray, name: str, camera: Camera) -> list[scene.Record]:
+    """A vector of the parameters."""
+    if np.linalg.norm(v) <= _NOTHING:
+        return []
+    label = marks.beyond(name, v, v, camera, color=style.ALGEBRA_TEXT, gap=26.0, room=60.0)
+    return [scene.Arrow(np.zeros(3), v, style.ALGEBRA, 0.011 * camera.height), label]
+
+
+def _answered(v: np.ndarray, given: np.ndarray, name: str, camera: Camera) -> list[scene.Record]:
+    """The one that psi gives instead."""
+    if np.linalg.norm(v - given) <= _NOTHING:
+        return []
+    return [
+        scene.Lines([np.zeros(3), v], style.MARK, style.CURVE, dash=(9.0, 6.0)),
+        scene.Points([v], style.MARK, 8.0),
+        marks.beyond(name, v, v, camera, color=style.MARK, gap=26.0, room=60.0),
+    ]
+
+
+def _maps(s: Shown) -> list[scene.Record]:
+    """Between both rows, phi upwards and psi downwards."""
+    low, high = _ROWS[1] + 74.0, _ROWS[0] - 60.0
+    records: list[scene.Record] = []
+    for x, start, stop, name, side in ((-26.0, low, high, r"\varphi", -1), (26.0, high, low, r"\psi", 1)):
+        at = _SIDE + x
+        records.append(scene.Arrow((at, start, 0), (at, stop, 0), style.INK, 2.2, 3.4))
+        records.append(
+            scene.Label(
+                f"${name}$", (at, (low + high) / 2.0, 0), style.INK, style.TITLE_TEXT, (side * 26.0, 0.0)
+            )
+        )
+    return records
+
+
+def _texts(s: Shown) -> list[scene.Record]:
+    last = r"$\mathbf{d} = J(\mathbf{x})\,\mathbf{l}$" if s.map == "phi_se" else r"$+\ \mathbf{l}$"
+    heads = (r"$S = \exp(Y)$", r"$R = \exp(X)$", last)
+    space = (r"$\mathfrak{se}(3)$", r"$\times\,\mathfrak{sym}(3)$")
+    if s.map == "phi_so":
+        space = (r"$\mathfrak{so}(3) \times \mathrm{\mathbb{R}}^3$", r"$\times\,\mathfrak{sym}(3)$")
+    labels = [
+        *titles(_UPPER, heads),
+        scene.Label(r"$\mathrm{Aff}^{+}\!(3)$", (_SIDE, _ROWS[0], 0), style.INK, style.TEXT),
+        scene.Label(space[0], (_SIDE, _ROWS[1] + 24.0, 0), style.INK, style.TEXT),
+        scene.Label(space[1], (_SIDE, _ROWS[1] - 24.0, 0), style.INK, style.TEXT),
+    ]
+    for box, text in zip(_LOWER, _below(s), strict=True):
+        labels.append(scene.Label(text, (box[0] + box[2] / 2.0, 108.0, 0), style.INK, _SMALL, anchor="cn"))
+    return [*labels, legend(_legend(s))]
+
+
+def _below(s: Shown) -> tuple[str, str, str]:
+    degrees = rf"|\mathbf{{x}}| = {np.degrees(np.linalg.norm(s.x)):.1f}^{{\circ}}"
+    if not s.same:
+        degrees += rf",\ \ |\mathbf{{x}}'| = {np.degrees(np.linalg.norm(s.back_x)):.1f}^{{\circ}}"
+    triple = r",\ ".join(_signed(float(v), plus="") for v in s.shift)
+    return r"$\mathrm{eigenvalues\ of}\ Y$", f"${degrees}$", rf"$\mathbf{{l}} = ({triple})$"
+
+
+def _legend(s: Shown) -> str:
+    whole = (
+        r"\hat{A} = \exp(\hat{X})\,\iota(\exp Y)"
+        if s.map == "phi_se"
+        else r"\hat{A}\,\mathbf{p} = R S\,\mathbf{p} + \mathbf{l}"
+    )
+    back = r"(\mathbf{x}, \mathbf{l}, Y)"
+    if not s.same:
+        moved = r"\mathbf{l}'" if np.linalg.norm(s.back_shift - s.shift) > _NOTHING else r"\mathbf{l}"
+        back = rf"(\mathbf{{x}}', {moved}, Y),\ \ \varphi(\psi(\hat{{A}})) = \hat{{A}}"
+    return rf"${whole}$,   $\psi(\hat{{A}}) = {back}\ \mathrm{{to}}\ 10^{{-12}}$"
+
+
+def _signed(value: float, plus: str = "+") -> str:
+    """A number with two decimals and its sign."""
+    text = f"{round(value, 2) + 0.0:.2f}"
+    return "{-}" + text[1:] if text[0] == "-" else (plus if float(text) else "") + text

@@ -1,0 +1,100 @@
+"""Figure 7.1 of the book."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+
+from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.lie import affine, so3, sym
+
+from . import _parametrise_page as page
+
+Vector = tuple[float, float, float]
+
+# An angle, radians, or a translation that differs by less is the same; how far off psi may be at most.
+_SAME, _EXACT = 1e-9, 1e-12
+_PSI = {"phi_se": affine.psi_se, "phi_so": affine.psi_so}
+_PHI = {"phi_se": affine.phi_se, "phi_so": affine.phi_so}
+_UPPER = np.triu_indices(3)
+
+
+@figure(
+    plates={
+        "B7.1": Plate(
+            title="The parametrisation of Aff+(3) and its inverse",
+            equations=("7.1", "7.2", "7.3", "7.4", "7.5", "7.6", "7.7", "7.8"),
+            caption=(
+                "Above, phi: the letter is stretched by exp(Y) along the three axes of Y, turned about the "
+                "axis x, and taken by d. Below, psi: what A is in the linear space, the logarithms of its "
+                "stretches, the rotation vector in the ball of radius pi, and l, in whose direction the "
+                "origin sets out on its way to d."
+            ),
+        ),
+        "B7.1b": Plate(
+            title="psi gives the principal rotation",
+            equations=("7.1", "7.2", "7.6", "7.8"),
+            caption=(
+                "A turn by 250 degrees is the same as one by 110 the other way. phi takes x from outside of "
+                "the ball of radius pi; psi answers with the vector inside of it, and with another l, for "
+                "which A is the same. Such a choice cannot be continuous everywhere: where x leaves the "
+                "ball, psi(A) enters it at the opposite point."
+            ),
+            params={"angle": 250.0},
+        ),
+        "B7.1c": Plate(
+            title="The parametrisation with a plain translation",
+            equations=("K 1", "K 2", "K 3", "K 7", "K 8"),
+            caption=(
+                "The same stretch and rotation by the map of Kaji and Ochiai: the translation comes last, as "
+                "it is. The origin goes straight to l, and l does not depend on which of the rotation "
+                "vectors is taken."
+            ),
+            params={"map": "phi_so"},
+        ),
+    },
+    time=Time("angle", 0.0, 360.0, frames=72, closed=True),
+)
+def parametrise(
+    axis: Annotated[Vector, Param("axis of the rotation (x, y, z), brought to length 1")] = (0.5, -0.5, 0.7),
+    angle: Annotated[float, Param("angle of the rotation", "deg", -720.0, 720.0)] = 80.0,
+    translation: Annotated[Vector, Param("l (x, y, z)", low=-3.0, high=3.0)] = (0.0, 1.3, 0.7),
+    stretch: Annotated[Vector, Param("factors along the axes of Y (x, y, z)", low=0.25, high=4.0)] = (
+        1.0,
+        0.7,
+        1.5,
+    ),
+    tilt: Annotated[float, Param("turn of these axes about the x axis", "deg", -180.0, 180.0)] = 30.0,
+    map: Annotated[Literal["phi_se", "phi_so"], Param("of the book, or of Kaji and Ochiai")] = "phi_se",
+) -> Drawing:
+    """Parametrise: an affine transformation as rotation vector, translation and log-stretch, and back.
+
+    What to look for: above, the letter goes from grey to orange in three steps;
+    below each step are the three numbers that say it. They may be any: every
+    point of the space below is a transformation with positive determinant. Turn
+    by more than 180 degrees, and the vector that psi gives back (dashed) is
+    another one, inside of the ball.
+    """
+    u = page.unit("axis", axis)
+    x, shift, factors = np.radians(angle) * u, np.array(translation), np.array(stretch)
+    Q = so3.rotation("x", np.radians(tilt))
+    Y = (Q * np.log(factors)) @ Q.T
+    given = np.concatenate([x, shift, Y[_UPPER]])
+    A = _PHI[map](given)
+    back = _PSI[map](A)
+    error = float(np.abs(_PHI[map](back) - A).max())
+    if error > _EXACT:
+        raise ArithmeticError(f"parametrise: phi(psi(A)) differs from A by {error:g}")
+    same = bool(np.abs(back - given).max() < _SAME * max(1.0, float(np.abs(given).max())))
+    shown = page.Shown(map, x, shift, Q, np.log(factors), A, back[:3], back[3:6], same)
+    numbers = {
+        "parameters": given,
+        "A": A,
+        "R": so3.exp(x),
+        "S": sym.exp(Y),
+        "d": A[:3, 3],
+        "log_stretch": np.log(factors),
+        "principal": back,
+        "same": same,
+        "round_trip_below": _EXACT,
+    }
+    return Drawing(page.picture(shown), numbers)
