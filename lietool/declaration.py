@@ -70,12 +70,14 @@ class Time:
 class Drawing:
     """What a figure returns: a `lietool.render.scene.Picture`, and the numbers that it shows.
 
-    Where it shows a mesh that somebody may want to have, that too, as a `lietool.mesh.surface.Mesh`.
+    Where it shows a mesh that somebody may want to have, that too, as a `lietool.mesh.surface.Mesh`; and
+    notes, a line each, of what is not as one would expect, which are told beside the file that is written.
     """
 
     picture: Any
     numbers: Mapping[str, object]
     mesh: Any = None
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -252,6 +254,9 @@ def _check_positional(figure: Figure) -> None:
         names = ", ".join(parameter.name for parameter in figure.positional)
         must = f"positional must count {names} from 1 to {_MOST_WORDS} at most"
         raise ValueError(f"{must}; got {places}. Correct it")
+    for parameter in figure.positional[:-1]:
+        if parameter.kind == "paths":
+            raise ValueError(f"parameter {parameter.name} takes all files that follow. Make it the last")
 
 
 def _check_plates(figure: Figure) -> None:

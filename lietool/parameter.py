@@ -25,7 +25,7 @@ class Param:
     Components of a vector that `help` names, as in ``"start (w, x, y, z)"``, are named in messages too.
     `only` names another parameter and those of its choices with which this one has a part in the picture:
     ``only=("view", "rings")``.  A file may also be given without its option: ``positional=1`` is the first
-    word on the command line that belongs to no option.
+    word on the command line that belongs to no option; files, which are the last, take all that follow.
     """
 
     help: str
@@ -41,8 +41,8 @@ class Param:
 class Parameter:
     """A parameter as the command line needs it.
 
-    `kind` is ``"float"``, ``"int"``, ``"str"``, ``"bool"``, ``"path"`` or ``"vector"``; `length` is that of a
-    vector, and 0 where any will do.
+    `kind` is ``"float"``, ``"int"``, ``"str"``, ``"bool"``, ``"path"``, ``"paths"`` or ``"vector"``;
+    `length` is that of a vector, and 0 where any will do.  The text of paths is that of one of them.
     """
 
     name: str
@@ -107,6 +107,7 @@ class Parameter:
             "str": "a text",
             "bool": "true or false",
             "path": "a file that exists",
+            "paths": "files that exist",
             "vector": f"{count} finite numbers" if self.length else "finite numbers with commas between them",
         }[self.kind]
         return (noun + f" {self.components}").strip() + (f", {self.range}" if self.range else "")
@@ -115,6 +116,8 @@ class Parameter:
         """Write a value as one types it: ``"1,0,0,0"``."""
         if self.kind == "vector":
             return ",".join(f"{number:.15g}" for number in value)
+        if self.kind == "paths":
+            return ", ".join(map(str, value))
         return f"{value:.15g}" if self.kind == "float" else str(value)
 
     def parse(self, text: str) -> Any:
@@ -135,6 +138,8 @@ class Parameter:
                     value = tuple(float(part) for part in text.split(","))
                 case "bool":
                     value = {"true": True, "false": False}[text.lower()]
+                case "paths":
+                    value = (text,)
                 case _:
                     value = text
             return self.check(value)
@@ -169,9 +174,11 @@ class Parameter:
                 return value
             case "bool" if isinstance(value, bool):
                 return value
-            # Unlike pathlib's, it says of a name that is too long, too, that there is no such file.
-            case "path" if isinstance(value, str | os.PathLike) and os.path.isfile(value):  # noqa: PTH113
+            case "path" if _is_file(value):
                 return Path(value)
+            case "paths" if isinstance(value, Iterable) and not isinstance(value, str):
+                files = tuple(value)
+                return tuple(map(Path, files)) if all(map(_is_file, files)) else None
         return None
 
     def _is_number(self, value: Any) -> bool:
@@ -184,6 +191,11 @@ class Parameter:
         except OverflowError:
             return False
         return math.isfinite(number) and low <= number <= high
+
+
+def _is_file(value: Any) -> typing.TypeGuard[str | os.PathLike]:
+    # Unlike pathlib's, it says of a name that is too long, too, that there is no such file.
+    return isinstance(value, str | os.PathLike) and os.path.isfile(value)  # noqa: PTH113
 
 
 def read(name: str, annotation: Any, default: Any) -> Parameter:
@@ -232,6 +244,8 @@ def _kind(base: Any) -> tuple[str, int, tuple[str, ...]]:
     arguments = get_args(base)
     if base in _KINDS:
         return _KINDS[base], 0, ()
+    if get_origin(base) is tuple and arguments == (Path, ...):
+        return "paths", 0, ()
     if get_origin(base) is Literal and all(isinstance(choice, str) for choice in arguments):
         return "str", 0, arguments
     if get_origin(base) is tuple and arguments and all(item in (float, ...) for item in arguments):
@@ -239,7 +253,8 @@ def _kind(base: Any) -> tuple[str, int, tuple[str, ...]]:
     if get_origin(base) in (types.UnionType, typing.Union) and set(arguments) == {Path, type(None)}:
         return "path", 0, ()
     raise ValueError(
-        f"has the type {base}. Use float, int, str, bool, Path, Literal of texts or a tuple of floats"
+        f"has the type {base}. Use float, int, str, bool, Path, Literal of texts or a tuple of floats or "
+        "paths"
     )
 
 
@@ -253,7 +268,7 @@ def _refuse_contradictions(parameter: Parameter) -> None:
         )
     if not numeric and (param.unit or param.low is not None or param.high is not None):
         raise ValueError("has a unit or a range but is no number. Leave them out")
-    if param.positional and parameter.kind != "path":
+    if param.positional and parameter.kind not in ("path", "paths"):
         raise ValueError("is positional but no file. Leave that out: what is no file is given by its option")
     if param.choices and parameter.kind != "str":
         raise ValueError("has choices but is no text. Leave them out")

@@ -58,6 +58,30 @@ def solid() -> Drawing:
     V = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]])
     return Drawing(Picture((), (64, 48)), {}, surface.Mesh(V, np.array([[0, 1, 2]])))
 '''
+_HERD = '''
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+
+from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.mesh import surface
+from lietool.render.scene import Picture
+
+
+@figure(plates={"H1": Plate("Herd", (), "Herd.")}, time=Time("t", 0, 1, frames=4, seconds=0.4), mesh=True)
+def herd(
+    first: Annotated[Path | None, Param("the first", positional=1)] = None,
+    others: Annotated[tuple[Path, ...], Param("the rest", positional=2)] = (),
+    t: Annotated[float, Param("time", low=0, high=1)] = 0.0,
+) -> Drawing:
+    """Any number of files."""
+    V = np.array([[0.0, 0.0, t], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]])
+    files = f"{first and first.name} {[file.name for file in others]}"
+    notes = () if others else ("1 file is few",)
+    mesh = surface.Mesh(V, np.array([[0, 1, 2]]))
+    return Drawing(Picture((), (64, 48)), {"files": files}, mesh, notes)
+'''
 _ALL = ".png, .svg, .pdf, .gif, .apng, .mp4, .obj, .off, .ply, .stl or .glb"
 
 
@@ -68,6 +92,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     chapter.mkdir(parents=True)
     (chapter / "spin.py").write_text(_SPIN)
     (chapter / "solid.py").write_text(_SOLID)
+    (chapter / "herd.py").write_text(_HERD)
     monkeypatch.setenv(figure.PROJECT, str(tmp_path / "project"))
     monkeypatch.setattr(paths, "FIGURES", tmp_path / "none")
     work = tmp_path / "work"
@@ -152,6 +177,49 @@ class TestWords:
         monkeypatch.setenv("COMP_WORDS", "lietool spin a")
         monkeypatch.setenv("COMP_CWORD", "2")
         assert _run().stdout.split() == ["file,a"]
+
+
+class TestManyWords:
+    @pytest.mark.parametrize(
+        ("words", "files"),
+        [
+            ("", "None []"),
+            ("a.svg", "a.svg []"),
+            ("a.svg b.svg c.svg d.svg", "a.svg ['b.svg', 'c.svg', 'd.svg']"),
+            ("a.svg --others b.svg --others c.svg", "a.svg ['b.svg', 'c.svg']"),
+            ("--first a.svg --others b.svg", "a.svg ['b.svg']"),
+        ],
+    )
+    def test_the_last_takes_all_that_follow(self, folder: Path, words: str, files: str) -> None:
+        result = _run("herd", "--json", *words.split())
+        assert result.exit_code == 0, result.stderr
+        assert json.loads(result.stdout)["files"] == files
+
+    @pytest.mark.parametrize(
+        ("words", "line"),
+        [
+            ("a.svg b.svg none.svg", "OTHERS must be files that exist; got 'none.svg'"),
+            ("--others none.svg", "--others must be files that exist; got 'none.svg'."),
+            (
+                "a.svg b.svg --others c.svg",
+                "OTHERS is given twice: 'b.svg', and --others c.svg. Leave out one of them",
+            ),
+        ],
+    )
+    def test_a_mistake_is_one_line(self, folder: Path, words: str, line: str) -> None:
+        result = _run("herd", *words.split())
+        assert (result.exit_code, result.stdout, result.stderr) == (2, "", f"lietool herd: {line}\n")
+
+    def test_help_says_so(self, folder: Path) -> None:
+        text = " ".join(_run("herd", "--help").stdout.split())
+        assert "[OPTIONS] [FIRST [OTHERS...]]" in text
+        assert "--others FILE the rest [once for each; or the second FILE without an option and all" in text
+
+    def test_notes_are_told_once_beside_the_file(self, folder: Path) -> None:
+        assert _run("herd", "a.svg", "-o", "x.obj").stderr == "lietool herd: 1 file is few\n"
+        assert _run("herd", "a.svg", "--json").stderr == "lietool herd: 1 file is few\n"
+        assert _run("herd", "a.svg", "-o", "x%d.obj").stderr == "lietool herd: 1 file is few\n"
+        assert _run("herd", "a.svg", "b.svg", "-o", "x.obj").stderr == ""
 
 
 class TestMeshes:

@@ -160,6 +160,13 @@ def test_a_malformed_vector_is_refused(project: Path, text: str) -> None:
             _tiny('x: Annotated[float, Param("x", positional=1)] = 1.0'),
             "parameter x is positional but no file. Leave that out",
         ),
+        (
+            _tiny(
+                'x: Annotated[tuple[Path, ...], Param("x", positional=1)] = (), '
+                'y: Annotated[Path | None, Param("y", positional=2)] = None'
+            ),
+            "parameter x takes all files that follow. Make it the last",
+        ),
         *(
             (
                 _tiny(

@@ -15,7 +15,7 @@ BACKENDS = ("osmesa", "egl", "gpu", "system")
 # The name of all words without an option, which no parameter has.
 _WORDS = "_words"
 _PLACES = ("", "first", "second", "third")
-_METAVARS = {"float": "NUMBER", "int": "N", "str": "TEXT", "path": "FILE"}
+_METAVARS = {"float": "NUMBER", "int": "N", "str": "TEXT", "path": "FILE", "paths": "FILE"}
 
 
 def command(figure: Figure) -> click.Command:
@@ -79,7 +79,9 @@ class _Command(click.Command):
 def _words(figure: Figure) -> Iterator[click.Argument]:
     """The words that need no option, if the figure takes any: files."""
     if figure.positional:
-        names = "".join(f" [{parameter.word}" for parameter in figure.positional).strip()
+        names = "".join(
+            f" [{parameter.word}{'...' * (parameter.kind == 'paths')}" for parameter in figure.positional
+        ).strip()
         yield click.Argument(
             [_WORDS], nargs=-1, type=_Word(), metavar=names + "]" * len(figure.positional), required=False
         )
@@ -87,21 +89,24 @@ def _words(figure: Figure) -> Iterator[click.Argument]:
 
 def _placed(figure: Figure, words: tuple[str, ...], given: Mapping[str, object]) -> dict[str, object]:
     """The parameters that words without an option give."""
-    places, found = figure.positional, {}
-    if len(words) > len(places):
+    places, found = figure.positional, dict[str, Any]()
+    if len(words) > len(places) and places[-1].kind != "paths":
         most, more = " and ".join(parameter.word for parameter in places), words[len(places)]
         raise click.UsageError(f"only {most} can be given without an option; got {quoted(more)} too")
-    for parameter, text in zip(places, words, strict=False):
+    for k, text in enumerate(words):
+        parameter = places[min(k, len(places) - 1)]
         if parameter.name in given:
             raise click.UsageError(
                 f"{parameter.word} is given twice: {quoted(text)}, and "
                 f"{parameter.option} {parameter.text(given[parameter.name])}. Leave out one of them"
             )
         try:
-            found[parameter.name] = parameter.parse(text)
+            value = parameter.parse(text)
         except ValueError as error:
             hint = f". Write --plate {text}" if text in plates() else ""
             raise click.UsageError(f"{parameter.word} {error}{hint}") from None
+        several = parameter.kind == "paths"
+        found[parameter.name] = (*found.get(parameter.name, ()), *value) if several else value
     return found
 
 
@@ -128,14 +133,14 @@ class _Value(click.ParamType):
             return mine.parse(value)
         except ValueError as error:
             hint = "." + nearest(value, mine.param.choices)
-            if not mine.param.choices and mine.default is not None:
+            if not mine.param.choices and mine.default not in (None, ()):
                 hint = f". Write for example {mine.option} {mine.text(mine.default)}"
             raise click.UsageError(f"{mine.option} {error}{hint}", ctx) from None
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        if self.parameter.kind == "path":
+        if self.parameter.kind in ("path", "paths"):
             return [CompletionItem(incomplete, type="file")]
         return [CompletionItem(item) for item in self.parameter.param.choices if item.startswith(incomplete)]
 
@@ -220,13 +225,17 @@ SIZE, DPI, THEME = _Read(_size.parse), _Read(_size.dpi), click.Choice(_picture.T
 def _option(parameter: Parameter) -> click.Option:
     param, default = parameter.param, parameter.default
     facts = [fact for fact in (parameter.where, parameter.range) if fact]
+    several = parameter.kind == "paths"
+    if several:
+        facts.append("once for each")
     if param.positional:
-        facts.append(f"or the {_PLACES[param.positional]} FILE without an option")
+        on = " and all that follow" if several else ""
+        facts.append(f"or the {_PLACES[param.positional]} FILE without an option{on}")
     if parameter.kind == "bool":
         on, off = parameter.option, f"--no-{parameter.option[2:]}"
         about = f"{param.help} [{'; '.join([*facts, f'default {on if default else off}'])}]"
         return click.Option([f"{on}/{off}", parameter.name], default=None, help=about)
-    if default is not None:
+    if default not in (None, ()):
         facts.append(f"default {parameter.text(default)}")
     metavar = _METAVARS.get(parameter.kind) or parameter.components.upper()
     if param.choices:
@@ -235,8 +244,18 @@ def _option(parameter: Parameter) -> click.Option:
         metavar = ",".join("N" * parameter.length) or "N,N,..."
     about = param.help + (f" [{'; '.join(facts)}]" if facts else "")
     return click.Option(
-        [parameter.option, parameter.name], type=_Value(parameter), metavar=metavar, help=about
+        [parameter.option, parameter.name],
+        type=_Value(parameter),
+        metavar=metavar,
+        help=about,
+        multiple=several,
+        callback=_joined if several else None,
     )
+
+
+def _joined(ctx: click.Context, param: click.Parameter, value: tuple[tuple[Any, ...], ...]) -> Any:
+    """All that an option was given with, one time or another; None where it was not given."""
+    return tuple(item for items in value for item in items) or None
 
 
 def _common(figure: Figure) -> Iterator[click.Option]:

@@ -216,7 +216,7 @@ def _parameters(item: _studio.Item) -> Iterator[entry.Parameter]:
             continue
         value = values[parameter.name]
         allowed = ", ".join(parameter.param.choices) or parameter.range.replace("-", "−")
-        shown = "none" if value is None else parameter.text(value)
+        shown = "none" if value in (None, ()) else parameter.text(value)
         if parameter.kind == "bool":
             shown = "yes" if value else "no"
         yield entry.Parameter(parameter.option, shown, allowed, parameter.param.help)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from lietool.figure import Time
+from lietool.figure import Figure, Time
 
 if TYPE_CHECKING:
     import numpy as np
@@ -32,6 +32,33 @@ class Pace:
 
 
 ITS_OWN = Pace()
+
+
+def time(figure: Figure, values: Mapping[str, object], ending: str, swept: set[str]) -> Time:
+    """Return a figure's time, unless a film of these parameters would show nothing that moves.
+
+    Raises
+    ------
+    click.UsageError
+        If it has none, its parameter is idle, or is among those `swept` that were given.
+    """
+    if figure.time is None:
+        raise click.UsageError(f"{figure.name} has no time to animate. Write a .png")
+    for idle in figure.idle(values, [figure.time.param]):
+        raise click.UsageError(
+            f"a {ending} sweeps {idle.option}, which has a part in the picture only {idle.where}. "
+            "Write a .png"
+        )
+    if figure.time.param in swept:
+        option = "--" + figure.time.param.replace("_", "-")
+        raise click.UsageError(
+            f"a {ending} sweeps {option}, so it cannot be given too. Leave out {option}, or write a .png"
+        )
+    if ending == ".mp4":
+        from lietool.render import video
+
+        video.require()
+    return figure.time
 
 
 def paced(time: Time, ending: str, pace: Pace) -> Time:

@@ -1,13 +1,13 @@
 """The mesh that a figure shows, to a file or, over the figure's time, to a row of numbered files."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from lietool.figure import Figure, Time
+from lietool.figure import Drawing, Figure, Time
 from lietool.verbs import _film
 
 if TYPE_CHECKING:
@@ -54,11 +54,13 @@ def still(mesh: Any, ending: str) -> bytes:
     return surface_io.encode(mesh, ending)
 
 
-def moving(figure: Figure, values: Mapping[str, Any], time: Time, path: Path) -> dict[Path, bytes]:
+def moving(
+    draw: Callable[..., Drawing], values: Mapping[str, Any], time: Time, path: Path
+) -> dict[Path, bytes]:
     """Return the files of a row and their contents: each moment of a film once, up to its far end."""
     width = (_NUMBER.findall(path.name) or [""])[0] or "d"
     found = {}
     for number, t in enumerate(dict.fromkeys(_film.sweep(time))):
         file = path.with_name(_NUMBER.sub(f"{number:{width}}", path.name))
-        found[file] = still(figure.draw(**values | {time.param: t}).mesh, path.suffix.lower())
+        found[file] = still(draw(**{**values, time.param: t}).mesh, path.suffix.lower())
     return found

@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -142,14 +142,21 @@ def make(
         raise click.UsageError(
             f"--seconds and --fps are for films. Write one of {listed(_film.ENDINGS)} with --output"
         )
-    time = _film.paced(_time(figure, values, ending, swept), ending, pace) if moving else None
+    time = _film.paced(_film.time(figure, values, ending, swept), ending, pace) if moving else None
+    notes: dict[str, None] = {}
+
+    def draw(**values: object) -> Drawing:
+        drawing = figure.draw(**values)
+        notes.update(dict.fromkeys(drawing.notes))
+        return drawing
+
     # A film draws frames of its own.
-    drawing = figure.draw(**values) if numbers or not time else None
+    drawing = draw(**values) if numbers or not time else None
     written: dict[Path, bytes] = {}
     if target and time and row:
-        written = _mesh.moving(figure, values, time, target)
+        written = _mesh.moving(draw, values, time, target)
     elif target and time:
-        written[target] = _moving(figure, values, time, ending, quality)
+        written[target] = _moving(figure, draw, values, time, ending, quality)
     elif target and drawing and solid:
         written[target] = _mesh.still(drawing.mesh, ending)
     elif target and drawing:
@@ -157,6 +164,8 @@ def make(
     for path, data in written.items():
         _write(path, data)
         click.echo(path, err=numbers)
+    for note in notes:
+        click.echo(f"lietool {figure.name}: {note}", err=True)
     if numbers and drawing:
         from lietool.golden import numbers as numbers_
 
@@ -206,26 +215,6 @@ def listed(endings: tuple[str, ...]) -> str:
     return ", ".join(endings[:-1]) + " or " + endings[-1]
 
 
-def _time(figure: Figure, values: Mapping[str, object], ending: str, swept: set[str]) -> Time:
-    if figure.time is None:
-        raise click.UsageError(f"{figure.name} has no time to animate. Write a .png")
-    for idle in figure.idle(values, [figure.time.param]):
-        raise click.UsageError(
-            f"a {ending} sweeps {idle.option}, which has a part in the picture only {idle.where}. "
-            "Write a .png"
-        )
-    if figure.time.param in swept:
-        option = "--" + figure.time.param.replace("_", "-")
-        raise click.UsageError(
-            f"a {ending} sweeps {option}, so it cannot be given too. Leave out {option}, or write a .png"
-        )
-    if ending == ".mp4":
-        from lietool.render import video
-
-        video.require()
-    return figure.time
-
-
 def _still(figure: Figure, values: dict[str, Any], drawing: Drawing, ending: str, quality: Quality) -> bytes:
     from lietool.render import export
 
@@ -248,11 +237,18 @@ def _still(figure: Figure, values: dict[str, Any], drawing: Drawing, ending: str
     )
 
 
-def _moving(figure: Figure, values: dict[str, Any], time: Time, ending: str, quality: Quality) -> bytes:
+def _moving(
+    figure: Figure,
+    draw: Callable[..., Drawing],
+    values: dict[str, Any],
+    time: Time,
+    ending: str,
+    quality: Quality,
+) -> bytes:
     even = ending == ".mp4"
 
-    def draw(place: float) -> "Picture":
-        return figure.draw(**values | {time.param: place}).picture
+    def page(place: float) -> "Picture":
+        return draw(**values | {time.param: place}).picture
 
     def render(picture: "Picture") -> "np.ndarray":
         return _render(picture, quality, even)
@@ -262,7 +258,7 @@ def _moving(figure: Figure, values: dict[str, Any], time: Time, ending: str, qua
 
         return film.settled(pictures, _store(), closed=time.closed)
 
-    return _film.encode(time, ending, draw, settle, render, figure.name, _about(figure, values))
+    return _film.encode(time, ending, page, settle, render, figure.name, _about(figure, values))
 
 
 def _render(picture: "Picture", quality: Quality, even: bool = False) -> "np.ndarray":
