@@ -172,12 +172,12 @@ def _reversed(constraints: tuple[constraint.Constraint, ...]) -> tuple[constrain
     def backwards(path: constraint.Path) -> constraint.Path:
         return lambda t: path(1.0 - t)
 
-    return tuple(
-        replace(c, normal=backwards(c.normal))
-        if isinstance(c, constraint.Direction)
-        else replace(c, path=backwards(c.path))
-        for c in constraints
-    )
+    def turned(c: constraint.Constraint) -> constraint.Constraint:
+        if not isinstance(c, constraint.Direction):
+            return replace(c, path=backwards(c.path))
+        return replace(c, normal=backwards(c.normal)) if callable(c.normal) else c
+
+    return tuple(map(turned, constraints))
 
 
 def seed_triangle(pair: Shape, seed: float) -> int:
@@ -258,8 +258,9 @@ def _swung(vector: constraint.Path, angle: float) -> constraint.Path:
     """A vector turned by an angle besides, half way."""
 
     def path(t: Array) -> Array:
-        v = np.asarray(vector(t)) @ [1.0, 1.0j] * np.exp(1.0j * angle * np.sin(np.pi * t))
-        return np.stack([v.real, v.imag], axis=-1)
+        (x, y), swing = np.asarray(vector(t)).T, angle * np.sin(np.pi * t)
+        c, s = np.cos(swing), np.sin(swing)
+        return np.stack([c * x - s * y, s * x + c * y], axis=-1)
 
     return path
 

@@ -235,7 +235,9 @@ def _rings(place: Plane, way: _morph.Way, V: Array, turned: Array) -> list[scene
 def held(place: Plane, way: _morph.Way, V: Array, t: float, curves: bool = False) -> list[scene.Record]:
     """What the constraints hold: the vertices on curves, the edge or its line, the barycentre."""
     records: list[scene.Record] = []
-    paths = [path for _, path in way.led.loci] + [way.led.barycentre] * (way.led.barycentre is not None)
+    paths = [path for _, path in way.led.loci]
+    if way.led.barycentre is not None:
+        paths.append(way.led.barycentre)
     for path in paths if curves else ():
         fine = np.asarray(path(np.linspace(0.0, 1.0, 4 * _morph.MOMENTS)))
         records.append(place.line(fine, style.ROUTE_1, style.EDGE))

@@ -105,8 +105,9 @@ def outlines(
     P, Q : (n, 2), (k, 2)
         Points of the outlines in order, in either direction: both are walked counter-clockwise.
     marks : sequence of (int, int), optional
-        Point i of P belongs to point j of Q.  Without any, Q is turned about so that the
-        outlines, centred and of the same area, are closest.
+        Point i of P belongs to point j of Q.  Without any, they correspond as where the outlines,
+        centred and of the same area, are closest when Q is turned; of almost equal ways that
+        by the smallest angle.
     samples : int
         About how many points to sample on each outline; sharp corners may add some.
     spacing, triangles

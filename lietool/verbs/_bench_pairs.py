@@ -4,6 +4,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from itertools import product
+from typing import Any
 
 import click
 import numpy as np
@@ -126,7 +127,7 @@ def measure(pair: str, constraint: str, homotopy: str, energy: str, *, angles: s
     """
     params = {"example": pair, "constraint": constraint, "homotopy": homotopy, "energy": energy}
     loaded = figure.load(_FIGURE)
-    shown: Mapping[str, np.ndarray] = loaded.draw(stage="frames", steps=1, angles=angles, **params).numbers
+    shown: Mapping[str, Any] = loaded.draw(stage="frames", steps=1, angles=angles, **params).numbers
     flipped = np.asarray(shown["flipped"])
     worst = int(np.argmax(flipped))
     return Row(

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import Any, cast
 
 import click
 from click.shell_completion import CompletionItem
@@ -51,7 +51,7 @@ class _Command(click.Command):
         fps: float | None = None,
         **given: object,
     ) -> None:
-        words = given.pop(_WORDS, ())
+        words = cast(tuple[str, ...], given.pop(_WORDS, ()))
         # An option that is not given is None, for it has no default of its own.
         explicit = {name: value for name, value in given.items() if value is not None}
         explicit |= _placed(self.figure, words, explicit)

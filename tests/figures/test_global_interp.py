@@ -1,13 +1,19 @@
 """What the plates of global interpolation claim: who flips, who does not, and that the ends are met."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from click.testing import CliRunner
+from PIL import Image, ImageSequence
 
 from lietool import figure, paths
+from lietool.cli import command
 from lietool.mesh import io, shapes, topology
 
 GLOBAL = figure.load("global-interp", (paths.FIGURES,))
 HALF = 20
+DATA = Path(__file__).parent.parent / "data"
 
 
 def turned(V, F):
@@ -209,6 +215,30 @@ class TestFiles:
         params = {"source": tmp_path / "a.svg", "target": tmp_path / "b.svg", "stage": "frames"}
         shown = GLOBAL.draw(**params).numbers
         assert shown["flipped"].max() == 0
+
+    def test_two_drawings_of_which_one_is_turned(self):
+        files = {"source": DATA / "fish.svg", "target": DATA / "bird.svg"}
+        shown = GLOBAL.draw(stage="frames", **files).numbers
+        # Fin and wing, and both tails, belong together although the bird is drawn rising.
+        assert shown["flipped"].max() == 0 and shown["least_det"].min() > 0.3
+        assert shown["energy"].max() < 1e-3
+
+    def test_a_film_of_them_by_the_command(self, tmp_path):
+        call = [
+            "global-interp",
+            str(DATA / "fish.svg"),
+            str(DATA / "bird.svg"),
+            "--draft",
+            "--size",
+            "160x120",
+        ]
+        result = CliRunner().invoke(
+            command, [*call, "--fps", "4", "--seconds", "1", "-o", str(tmp_path / "m.gif")]
+        )
+        assert (result.exit_code, result.stdout) == (0, f"{tmp_path / 'm.gif'}\n")
+        with Image.open(tmp_path / "m.gif") as film:
+            frames = [np.asarray(frame.convert("RGB"), float) for frame in ImageSequence.Iterator(film)]
+        assert len(frames) == 4 and np.abs(frames[2] - frames[0]).max() > 100.0
 
     def test_two_meshes(self, tmp_path):
         pair = shapes.fish()

@@ -368,6 +368,19 @@ class TestOutlines:
         mesh = compatible.outlines(P, Q[::-1] if turned else Q, samples=60, triangles=200)
         np.testing.assert_allclose(3.0 * mesh.source + 7.0, mesh.target, atol=1e-9)
 
+    @pytest.mark.parametrize("angle", [40.0, -100.0, 180.0])
+    def test_without_marks_it_may_be_turned(self, angle):
+        P = comb(12)
+        c, s = np.cos(np.deg2rad(angle)), np.sin(np.deg2rad(angle))
+        Q = np.roll(2.0 * P @ [[c, s], [-s, c]], 5, axis=0)
+        mesh = compatible.outlines(P, Q, samples=60, triangles=200)
+        np.testing.assert_allclose(2.0 * mesh.source @ [[c, s], [-s, c]], mesh.target, atol=1e-9)
+
+    def test_of_equal_ways_it_takes_the_least_turn(self):
+        P = 3.0 * SQUARE
+        mesh = compatible.outlines(P, np.roll(P, 3, axis=0), samples=40, triangles=100)
+        np.testing.assert_allclose(mesh.source, mesh.target, atol=1e-9)
+
     def test_directions_do_not_matter(self):
         P, Q = comb(12), 2.0 * comb(12)
         first = compatible.outlines(P, Q, [(0, 0), (4, 4), (7, 7)], samples=40, triangles=100)
