@@ -243,7 +243,7 @@ def _guide(prepared: Prepared, params: Array, way: ways.Way) -> Array:
     # What the handles lack of 1 is the pins': so equal parameters give themselves, without rounding.
     mixed = prepared.weights @ (params[1:] - params[0])
     mixed += params[0]
-    return way.decode(mixed)[:, :3, :3]
+    return way.decode_linear(mixed)
 
 
 def _right(prepared: Prepared, guide: Array) -> Array:

@@ -279,11 +279,11 @@ def _blend(prepared: Prepared, w: Array) -> tuple[Array, Mask]:
     mixed = (w @ prepared.params.reshape(count, m * d)).reshape(m, d)
     fallback = np.zeros(m, bool)
     if not len(prepared.lacking):
-        return prepared.way.decode(mixed)[:, :3, :3], fallback
+        return prepared.way.decode_linear(mixed), fallback
     needed = np.any((w[:, None] != 0.0) & ~prepared.able[:, prepared.lacking], axis=0)
     fallback[prepared.lacking[needed]] = True
     mixed[fallback] = 0.0
-    A = prepared.way.decode(mixed)
+    A = prepared.way.decode_linear(mixed)
     polar = np.tensordot(w, prepared.spare[:, needed], 1)
-    A[fallback] = ways.POLAR_QUATERNION.decode(polar)
-    return A[:, :3, :3], fallback
+    A[fallback] = ways.POLAR_QUATERNION.decode_linear(polar)
+    return A, fallback

@@ -70,6 +70,11 @@ def linear(p: Array, v: Rows) -> Rows:
     return [x + y for x, y in zip(v, _affine(list(p), v), strict=True)]
 
 
+def linear_part(p: Array) -> Rows:
+    """Return the linear part of I + M."""
+    return [p[i] + 1.0 if i in (0, 5, 10) else p[i] for i in range(12) if i % 4 < 3]
+
+
 def linear_matrix(p: Array) -> Rows:
     """Return I + M."""
     zero = np.zeros_like(p[0])
@@ -94,14 +99,24 @@ def polar_quaternion(p: Array, v: Rows) -> Rows:
     return _turned(kernels.matrix(_quaternion(p)), _symmetric(_stretch(p[7:]), v), list(p[4:7]))
 
 
+def polar_quaternion_part(p: Array) -> Rows:
+    """Return R S."""
+    return _stretched(kernels.matrix(_quaternion(p)), _stretch(p[7:]))
+
+
 def polar_quaternion_matrix(p: Array) -> Rows:
     """Return R S and t."""
-    return _homogeneous(_stretched(kernels.matrix(_quaternion(p)), _stretch(p[7:])), list(p[4:7]))
+    return _homogeneous(polar_quaternion_part(p), list(p[4:7]))
 
 
 def dual_quaternion(p: Array, v: Rows) -> Rows:
     """Return M S v: M of the dual quaternion 1 + p, whatever its length."""
     return dual_kernels.act([*_quaternion(p), *p[4:8]], _symmetric(_stretch(p[8:]), v))
+
+
+def dual_quaternion_part(p: Array) -> Rows:
+    """Return R S."""
+    return _stretched(kernels.matrix(_quaternion(p)), _stretch(p[8:]))
 
 
 def dual_quaternion_matrix(p: Array) -> Rows:
@@ -111,9 +126,19 @@ def dual_quaternion_matrix(p: Array) -> Rows:
     return _homogeneous(_stretched(kernels.matrix(z), _stretch(p[8:])), t)
 
 
+def alexa_part(p: Array) -> Rows:
+    """Return exp of the linear part of X."""
+    return aff_kernels.exp_part([p[i] for i in range(12) if i % 4 < 3])
+
+
 def alexa_matrix(p: Array) -> Rows:
     """Return exp(X)."""
     return aff_kernels.exp(list(p))
+
+
+def phi_part(p: Array) -> Rows:
+    """Return exp(x) exp(Y)."""
+    return _stretched(kernels.rotation_exp(p[:3]), sym_kernels.exp_space(list(p[6:])))
 
 
 phi_so_matrix: Matrix = affine_kernels.phi_so

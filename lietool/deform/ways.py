@@ -47,6 +47,7 @@ class Way:
     name: str
     encode: Callable[[ArrayLike], tuple[Array, Mask]]
     decode: Callable[[ArrayLike], Array]
+    decode_linear: Callable[[ArrayLike], Array]
     width: int
     kernel: way_kernels.Move = field(repr=False)
     parts: tuple[slice, slice, slice] | None = None
@@ -126,11 +127,11 @@ def _encode_dual_quaternion(A: ArrayLike) -> tuple[Array, Mask]:
     return params, _everywhere(params)
 
 
-def _decode(name: str, width: int, kernel: way_kernels.Matrix, params: ArrayLike) -> Array:
+def _decode(name: str, width: int, size: int, kernel: way_kernels.Matrix, params: ArrayLike) -> Array:
     where = f"ways.{name}"
     p = checks.array(where, "params", params, (width,))
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        A = blocks.run(kernel, (4, 4), (p, 1))
+        A = blocks.run(kernel, (size, size), (p, 1))
     if A.size and not np.max(np.abs(A)) < np.inf:
         index = checks.first(~np.all(np.isfinite(A), axis=(-1, -2)))
         checks.fail(where, "params", *UNDONE, index)
@@ -148,21 +149,33 @@ def _way(
     width: int,
     encode: Callable[[ArrayLike], tuple[Array, Mask]],
     matrix: way_kernels.Matrix,
+    part: way_kernels.Matrix,
     move: way_kernels.Move,
     parts: tuple[slice, slice, slice] | None = None,
     whole_turns: bool = False,
 ) -> Way:
-    return Way(name, encode, partial(_decode, name, width, matrix), width, move, parts, whole_turns)
+    decode, decode_linear = (
+        partial(_decode, name, width, n, kernel) for n, kernel in ((4, matrix), (3, part))
+    )
+    return Way(name, encode, decode, decode_linear, width, move, parts, whole_turns)
 
 
 _TWELVE = (slice(0, 3), slice(3, 6), slice(6, 12))
 
-LINEAR = _way("linear", 12, _encode_linear, way_kernels.linear_matrix, way_kernels.linear)
+LINEAR = _way(
+    "linear",
+    12,
+    _encode_linear,
+    way_kernels.linear_matrix,
+    way_kernels.linear_part,
+    way_kernels.linear,
+)
 POLAR_QUATERNION = _way(
     "polar_quaternion",
     13,
     _encode_polar_quaternion,
     way_kernels.polar_quaternion_matrix,
+    way_kernels.polar_quaternion_part,
     way_kernels.polar_quaternion,
     (slice(0, 4), slice(4, 7), slice(7, 13)),
 )
@@ -171,14 +184,16 @@ DUAL_QUATERNION = _way(
     14,
     _encode_dual_quaternion,
     way_kernels.dual_quaternion_matrix,
+    way_kernels.dual_quaternion_part,
     way_kernels.dual_quaternion,
 )
-ALEXA = _way("alexa", 12, _encode_alexa, way_kernels.alexa_matrix, way_kernels.alexa)
+ALEXA = _way("alexa", 12, _encode_alexa, way_kernels.alexa_matrix, way_kernels.alexa_part, way_kernels.alexa)
 PHI_SO = _way(
     "phi_so",
     12,
     partial(_encode_phi, "phi_so", affine_kernels.psi_so),
     way_kernels.phi_so_matrix,
+    way_kernels.phi_part,
     way_kernels.phi_so,
     _TWELVE,
     whole_turns=True,
@@ -188,6 +203,7 @@ PHI_SE = _way(
     12,
     partial(_encode_phi, "phi_se", affine_kernels.psi_se),
     way_kernels.phi_se_matrix,
+    way_kernels.phi_part,
     way_kernels.phi_se,
     _TWELVE,
 )

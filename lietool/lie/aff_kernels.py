@@ -3,6 +3,7 @@
 `aff` calls them.  Nothing here checks its input.
 """
 
+from collections.abc import Sequence
 from math import factorial
 
 import numpy as np
@@ -13,46 +14,88 @@ from lietool.lie.blocks import Rows
 
 Array = NDArray[np.float64]
 
-_TAYLOR = [1.0 / factorial(k) for k in range(16)]
+# Of (e^z - 1)/z: with |z| <= 1 what is left out is below 1e-17.
+_MEAN = [1.0 / factorial(k + 1) for k in range(18)]
 # 2 artanh(W) = 2 (W + W^3/3 + ...): with |W| < 1/8 the last term is below 1e-17 of the first.
 _ARTANH = [2.0 / (2 * k + 1) for k in range(9)]
 
 
-def _product(A: Rows, B: Rows, corner: float = 0.0) -> Rows:
-    """Multiply two matrices of three rows and four columns; below B stands (0 0 0 corner)."""
-    rows = []
-    for i in (0, 4, 8):
-        row = [A[i] * B[j] + A[i + 1] * B[4 + j] + A[i + 2] * B[8 + j] for j in range(4)]
-        rows += [*row[:3], row[3] + corner * A[i + 3] if corner else row[3]]
-    return rows
+def _square(M: Rows) -> Rows:
+    """Return M^2 of a matrix (3, 3)."""
+    a, b, c, d, e, f, g, h, i = M
+    bd, cg, fh = b * d, c * g, f * h
+    ae, ai, ei = a + e, a + i, e + i
+    return (
+        *(a * a + bd + cg, b * ae + c * h, c * ai + b * f),
+        *(d * ae + f * g, e * e + bd + fh, f * ei + c * d),
+        *(g * ai + d * h, h * ei + b * g, i * i + cg + fh),
+    )
 
 
-def _cubic(c: list[float], powers: list[Rows]) -> list[Array]:
-    """Return c_0 I + c_1 X + c_2 X^2 + c_3 X^3."""
-    rows = [c[1] * x + c[2] * y + c[3] * z for x, y, z in zip(*powers, strict=True)]
-    return [row + c[0] if i in (0, 5, 10) else row for i, row in enumerate(rows)]
+def _invariants(M: Rows) -> tuple[Array, Array, Array]:
+    """Return the coefficients of M^3 = s1 M^2 - s2 M + s3 I (Cayley and Hamilton)."""
+    a, b, c, d, e, f, g, h, i = M
+    minor = e * i - f * h
+    s2 = minor + (a * e - b * d) + (a * i - c * g)
+    return a + e + i, s2, a * minor - b * (d * i - f * g) + c * (d * h - e * g)
+
+
+def _quadratic(c: Sequence[Array], M: Rows, M2: Rows) -> list[Array]:
+    """Return c_0 I + c_1 M + c_2 M^2."""
+    rows = [c[1] * x + c[2] * y for x, y in zip(M, M2, strict=True)]
+    return [row + c[0] if i in (0, 4, 8) else row for i, row in enumerate(rows)]
+
+
+def _halved(L: Rows) -> tuple[Rows, NDArray[np.int_]]:
+    """Return L / 2^s, whose rows have an absolute sum of at most 1, and s >= 0."""
+    size = np.abs(L[0]) + np.abs(L[1]) + np.abs(L[2])
+    for i in (3, 6):
+        size = np.maximum(size, np.abs(L[i]) + np.abs(L[i + 1]) + np.abs(L[i + 2]))
+    steps = np.maximum(np.frexp(size)[1], 0)
+    return [np.ldexp(x, -steps) for x in L], steps
+
+
+def _series(M: Rows) -> tuple[Sequence[Array], Sequence[Array]]:
+    """Return e^M and (e^M - I) / M as coefficients of I, M and M^2.
+
+    Horner's rule, in which a multiplication by M costs no product of matrices: M^3 is reduced at once.
+    """
+    s1, s2, s3 = _invariants(M)
+    x, y, z = np.full_like(s1, _MEAN[-1]), np.zeros_like(s1), np.zeros_like(s1)
+    for c in reversed(_MEAN[:-1]):
+        x, y, z = s3 * z + c, x - s2 * z, y + s1 * z
+    return (s3 * z + 1.0, x - s2 * z, y + s1 * z), (x, y, z)
+
+
+def exp_part(L: Rows) -> Rows:
+    """Return e^L of matrices (3, 3), as `exp` does."""
+    M, steps = _halved(L)
+    E = _quadratic(_series(M)[0], M, _square(M))
+    while np.any(on := steps > 0):
+        for row, new in zip(E, _square(E), strict=True):
+            np.copyto(row, new, where=on)
+        steps = steps - 1
+    return E
 
 
 def exp(X: Rows) -> Rows:
-    """Return e^X by its series to degree 15, after halving, and squaring.
+    """Return e^X by its series, after halving, and squaring; the translation goes by (e^L - I) / L.
 
-    Each element is halved as often as its linear part asks; the translation has no say in it.
+    Each element is halved as often as its linear part L asks; the translation has no say in it.
     """
-    size = sum(np.abs(X[i]) for i in range(12) if i % 4 < 3)
-    steps = np.clip(np.frexp(size)[1] + 1, 0, None)
-    X = [np.ldexp(x, -steps) for x in X[:12]]
-    X2 = _product(X, X)
-    powers = [X, X2, _product(X2, X)]
-    X4 = _product(X2, X2)
-    M = _cubic(_TAYLOR[12:], powers)
-    for k in (8, 4, 0):
-        high = _product(X4, M, corner=_TAYLOR[k + 4])
-        M = [low + rest for low, rest in zip(_cubic(_TAYLOR[k : k + 4], powers), high, strict=True)]
-    while np.any(steps > 0):
-        M = [np.where(steps > 0, new, old) for new, old in zip(_product(M, M, corner=1.0), M, strict=True)]
+    M, steps = _halved([X[i] for i in range(12) if i % 4 < 3])
+    M2 = _square(M)
+    of_exp, of_mean = _series(M)
+    E, J = _quadratic(of_exp, M, M2), _quadratic(of_mean, M, M2)
+    t = [np.ldexp(X[i], -steps) for i in (3, 7, 11)]
+    t = [J[i] * t[0] + J[i + 1] * t[1] + J[i + 2] * t[2] for i in (0, 3, 6)]
+    while np.any(on := steps > 0):
+        twice = [E[3 * i] * t[0] + E[3 * i + 1] * t[1] + E[3 * i + 2] * t[2] + t[i] for i in range(3)]
+        for row, new in zip((*E, *t), (*_square(E), *twice), strict=True):
+            np.copyto(row, new, where=on)
         steps = steps - 1
-    zero = np.zeros_like(M[0])
-    return *M, zero, zero, zero, zero + 1.0
+    zero = np.zeros_like(t[0])
+    return *E[:3], t[0], *E[3:6], t[1], *E[6:], t[2], zero, zero, zero, zero + 1.0
 
 
 def real_log(A: Array) -> tuple[Array, NDArray[np.bool_]]:

@@ -186,3 +186,10 @@ def test_ways_are_asked_for_by_name():
     with pytest.raises(ValueError, match=r"^ways\.named: name must be one of linear, .*; got 'phi'\.$"):
         ways.named("phi")
     assert [way.name for way in ways.WAYS.values() if way.whole_turns] == ["phi_so"]
+
+
+@EVERY
+def test_the_linear_part_alone_is_that_of_the_matrix(way):
+    A = transformations((4, 5))
+    params = 0.8 * way.encode(A)[0]
+    np.testing.assert_allclose(way.decode_linear(params), way.decode(params)[..., :3, :3], atol=1e-15)
