@@ -1,0 +1,106 @@
+"""Key transformations for `pose`: our example, or those in a file of the user."""
+
+import json
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+
+from lietool.deform import pose, pose_keys, probe_motion, ways
+from lietool.deform.probe_values import Table
+from lietool.lie import polar, so3, sym
+from lietool.mesh.files import BROKEN, Place, read_text
+
+# Of each key: the axis and the angle in degrees of its rotation; the logarithm of its stretch, xx xy xz yy yz
+# zz; and where the centre of the shape goes, in sizes of the shape.
+_EXAMPLE = (
+    ((0.0, 1.0, 0.0), 0.0, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (-0.9, 0.0, -1.45)),
+    ((0.1, 1.0, 0.15), 150.0, (0.0, 0.0, 0.3, 0.2, 0.0, 0.0), (-0.8, 0.0, 1.1)),
+    ((-0.1, 1.0, 0.2), 240.0, (0.0, -0.3, 0.0, 0.0, 0.0, 0.25), (0.8, 0.0, 1.1)),
+    ((-0.3, 0.0, 1.0), 165.0, (0.0, 0.0, -0.25, 0.0, 0.0, 0.0), (0.9, 0.0, -1.45)),
+)
+_UPPER = np.triu_indices(3)
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """Keys A (k, 4, 4) at their times, rotation vectors that some are stated with, and the centre."""
+
+    A: np.ndarray
+    times: np.ndarray
+    near: dict[int, np.ndarray]
+    centre: np.ndarray
+
+    def path(self, name: str, curve: str) -> pose.Path:
+        """Return the path in the parameters of a way; ValueError where it has none for a key."""
+        way = ways.named(name)
+        near = self.near if name in ("phi_so", "phi_se") else None
+        return pose.CURVES[curve](pose_keys.followed(way, self.A, self.times, self.centre, near=near))
+
+
+def example(centre: np.ndarray, size: float) -> Given:
+    """Return our keys for a shape of a size about its centre."""
+    A, near = [], {}
+    for k, (axis, degrees, stretch, place) in enumerate(_EXAMPLE):
+        x = np.radians(degrees) * np.array(axis) / np.linalg.norm(axis)
+        Y = np.zeros((3, 3))
+        Y[_UPPER] = stretch
+        A.append(_about(so3.exp(x) @ sym.exp(Y + Y.T - np.diag(np.diag(Y))), centre, size * np.array(place)))
+        near[k] = x
+    return Given(np.array(A), np.arange(float(len(A))), near, centre)
+
+
+def read(path: Path, centre: np.ndarray) -> Given:
+    """Return the keys in a file .toml or .json; ValueError names the key and what is wrong with it."""
+    place = Place("pose", path)
+    top = _content(place)
+    top.only(("centre", "key"))
+    c = top.numbers("centre", (3,)) if "centre" in top.data else centre
+    rest = np.eye(4)
+    rest[:3, 3] = c
+    A, times, near = [], [], {}
+    for k, value in enumerate(top.tables("key", "keys, with at least two [[key]]")):
+        label = f"key {k + 1}"
+        entry = top.table(label, value, label)
+        times.append(float(entry.numbers("time", ())) if "time" in entry.data else float(k))
+        motion = {name: part for name, part in entry.data.items() if name != "time"}
+        frame, turns, stated = probe_motion.read(Table(place, label, motion), rest)
+        A.append(pose.relative(rest, frame))
+        if stated and np.linalg.det(frame[:3, :3]) > 0.0:
+            near[k] = so3.log(polar.rotation(frame[:3, :3])) + 2.0 * np.pi * turns
+    _ordered(place, np.array(times))
+    return Given(np.array(A), np.array(times), near, c)
+
+
+def _ordered(place: Place, times: np.ndarray) -> None:
+    if len(times) < 2:
+        place.fail("keys, two or more", "one", remedy="Add another [[key]].")
+    late = np.flatnonzero(np.diff(times) <= 0.0)
+    if len(late):
+        k = int(late[0]) + 1
+        got = f"{times[k]:g} after {times[k - 1]:g}"
+        place.fail(f"a file in which key {k + 1} has a later time than the one before", got)
+
+
+def _content(place: Place) -> Table:
+    ending = place.path.suffix.lower()
+    if ending not in (".toml", ".json"):
+        place.fail("a file .toml or .json", ending or "no ending", remedy="Name it after what it holds.")
+    text = read_text(place)
+    try:
+        data = tomllib.loads(text) if ending == ".toml" else json.loads(text)
+    except BROKEN as error:
+        _broken(place, ending, error)
+    return Table(place, "", {}).table("", data, "")
+
+
+def _broken(place: Place, ending: str, error: Exception) -> NoReturn:
+    place.fail(f"a {ending[1:].upper()} file", place.cause(error))
+
+
+def _about(L: np.ndarray, centre: np.ndarray, shift: np.ndarray) -> np.ndarray:
+    A = np.eye(4)
+    A[:3, :3], A[:3, 3] = L, centre + shift - L @ centre
+    return A
