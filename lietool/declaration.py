@@ -56,7 +56,10 @@ class Plate:
 
 @dataclass(frozen=True)
 class Time:
-    """The parameter that an animation sweeps: back and forth, or round and round where it is `closed`."""
+    """The parameter that an animation sweeps: back and forth, or round and round where it is `closed`.
+
+    Where there are `moments`, it goes through these, once.
+    """
 
     param: str
     start: float
@@ -64,6 +67,7 @@ class Time:
     frames: int = 48
     seconds: float = 4.0
     closed: bool = False
+    moments: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -72,12 +76,16 @@ class Drawing:
 
     Where it shows a mesh that somebody may want to have, that too, as a `lietool.mesh.surface.Mesh`; and
     notes, a line each, of what is not as one would expect, which are told beside the file that is written.
+    Where a film is to go through a sequence rather than forth and back, `moments` are its frames' times, and
+    `fps` how many there are in a second.
     """
 
     picture: Any
     numbers: Mapping[str, object]
     mesh: Any = None
     notes: tuple[str, ...] = ()
+    moments: tuple[float, ...] = ()
+    fps: float = 24.0
 
 
 @dataclass(frozen=True)

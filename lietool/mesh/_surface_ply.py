@@ -79,6 +79,22 @@ def decode(place: Place, data: bytes) -> Mesh:
     return Mesh(V, faces, uv, uv_faces, _colours(elements, vertex), _others(vertex))
 
 
+def decode_cloud(place: Place, data: bytes) -> Mesh:
+    """Return the points in a file .ply, whatever else is in it, as a mesh without faces."""
+    order, elements, body = _header(place, data, faces=False)
+    if not order:
+        body, order = _numbers(place, body).tobytes(), "text"
+    last = [element.name for element in elements].index("vertex")
+    found: dict[str, dict[str, Column]] = {}
+    at = 0
+    for element in elements[: last + 1]:
+        found[element.name], at = _rows(place, element, order, body, at)
+    columns = found["vertex"]
+    V = np.stack([_plain(columns[a]) for a in "xyz"], axis=1)
+    colours = _colours(elements, columns)
+    return Mesh(V, np.zeros((0, 3), np.intp), None, None, colours, _others(columns))
+
+
 def encode(mesh: Mesh) -> bytes:
     """Return a mesh as the contents of a binary file .ply: float64, colours as bytes, corners' textures."""
     columns: dict[str, NDArray[Any]] = {name: mesh.vertices[:, a] for a, name in enumerate("xyz")}
@@ -110,7 +126,7 @@ def _stored(column: NDArray[Any]) -> str:
     return "|u1" if column.dtype == np.uint8 else "<f8"
 
 
-def _header(place: Place, data: bytes) -> tuple[str, list[Element], bytes]:
+def _header(place: Place, data: bytes, faces: bool = True) -> tuple[str, list[Element], bytes]:
     """Return "" for text or the byte order, the elements, and what follows."""
     end = re.search(rb"\nend_header[ \t]*\r?\n", data)
     if not re.match(rb"ply[ \t]*\r?\n", data):
@@ -136,13 +152,15 @@ def _header(place: Place, data: bytes) -> tuple[str, list[Element], bytes]:
     if order is None:
         place.fail("a mesh whose header has a format", "none")
     made = [Element(name, size, tuple(properties)) for name, size, properties in elements]
-    _check_header(place, made)
+    _check_header(place, made, faces)
     return order, made, data[end.end() :]
 
 
-def _check_header(place: Place, elements: list[Element]) -> None:
+def _check_header(place: Place, elements: list[Element], faces: bool) -> None:
     sizes = {element.name: element.count for element in elements}
-    if not sizes.get("vertex") or not sizes.get("face"):
+    if not sizes.get("vertex") and not faces:
+        place.fail("a cloud of points", "none")
+    if not sizes.get("vertex") or (faces and not sizes.get("face")):
         place.fail("a mesh with faces", f"{sizes.get('vertex', 0)} vertices and {sizes.get('face', 0)} faces")
     for element in elements:
         names = [p.name for p in element.properties]

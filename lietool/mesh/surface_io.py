@@ -96,6 +96,10 @@ def encode(mesh: Mesh, ending: str) -> bytes:
     if ending not in ENDINGS:
         topology.fail("surface_io.encode", "ending", f"one of {', '.join(ENDINGS)}", repr(ending))
     V = topology.vertices("surface_io.encode", "vertices", mesh.vertices, 3)
+    if ending in (".stl", ".glb") and not len(mesh.faces):
+        topology.fail(
+            "surface_io.encode", "ending", "one that holds points alone, .ply, .obj or .off", ending
+        )
     if ending in (".stl", ".glb") and np.max(np.abs(V)) > np.finfo(np.float32).max:
         must = f"within what a {ending} holds, 3.4e38"
         topology.fail("surface_io.encode", "vertices", must, f"{np.max(np.abs(V)):.1e}")

@@ -89,6 +89,35 @@ def paced(time: Time, ending: str, pace: Pace) -> Time:
     return replace(time, seconds=seconds, frames=frames)
 
 
+def followed(time: Time, moments: tuple[float, ...], fps: float, pace: Pace) -> Time:
+    """Return the time of a film that goes once through moments, so many a second.
+
+    Where both its length and its rate are asked for, it has as many moments as they say, at even distances.
+
+    Parameters
+    ----------
+    time : Time
+    moments : tuple of float
+    fps : float
+    pace : Pace
+
+    Raises
+    ------
+    ValueError
+        If it has fewer than two frames or too many.
+    """
+    if pace.seconds and pace.fps:
+        count = max(round(pace.seconds * pace.fps), 2)
+        moments = tuple(time.start + (time.stop - time.start) * k / (count - 1) for k in range(count))
+    seconds = pace.seconds or len(moments) / (pace.fps or fps)
+    if not 2 <= len(moments) <= _MOST:
+        raise ValueError(
+            f"a film must have 2 to {_MOST} pictures; got a sequence of {len(moments)}. "
+            "Change --seconds and --fps"
+        )
+    return replace(time, moments=moments, frames=len(moments), seconds=seconds)
+
+
 def rate(time: Time, ending: str) -> float:
     """Return how many pictures a second a film has that nobody asked for more or fewer of."""
     own = time.frames / time.seconds
@@ -110,6 +139,8 @@ def sweep(time: Time) -> list[float]:
     list of float
         One for each frame.
     """
+    if time.moments:
+        return list(time.moments)
     count = time.frames
     if time.closed:
         parts = [k / count for k in range(count)]

@@ -150,8 +150,10 @@ def make(
         notes.update(dict.fromkeys(drawing.notes))
         return drawing
 
-    # A film draws frames of its own.
-    drawing = draw(**values) if numbers or not time else None
+    # A film draws frames of its own, but of which moments may be for the drawing to say.
+    drawing = draw(**values) if numbers or not time or figure.mesh else None
+    if time and drawing and drawing.moments:
+        time = _film.followed(time, drawing.moments, drawing.fps, pace)
     written: dict[Path, bytes] = {}
     if target and time and row:
         written = _mesh.moving(draw, values, time, target)

@@ -1,0 +1,88 @@
+"""A user's own shapes, probes and sequences, from files and from words."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lietool.deform import painted, probe_io
+from lietool.deform.probe_io import Probes
+from lietool.mesh import cloud_io, surface_io
+from lietool.render import style
+
+from ._probe_case import Case, Recipe, normalised
+from ._probe_look import Look
+
+Array = NDArray[np.float64]
+
+_DEGREES = 90.0
+# Of the page's height: clouds of so many points have dots of such a size.
+_DOTS = (2.2, 6.0)
+
+
+def shape(path: Path, turn: float) -> Case:
+    """Return a user's shape with two probes at the ends of its longest side, the second turned."""
+    mesh = cloud_io.read(path) if cloud_io.is_cloud(path) else surface_io.read(path)
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    size = _size(mesh.vertices)
+    if not size > 0.0:
+        raise ValueError(f"shape {path} must have an extent; got all its points at one place. Check the file")
+    before, after, dots = style.BEFORE, style.AFTER, 0.0
+    if not len(mesh.faces):
+        dots, before = float(np.clip(480.0 / np.sqrt(len(mesh.vertices)), *_DOTS)), style.BEFORE_EDGE
+    look = Look((1.0, 0.5, 0.35), 0.4 * size, (before,), (after,), dots=dots)
+    return Case("own", mesh, _two(low, high, turn), look, Recipe())
+
+
+def _size(V: Array) -> float:
+    """Half the diagonal of the box."""
+    return 0.5 * float(np.linalg.norm(np.ptp(V, axis=0)))
+
+
+def _two(low: Array, high: Array, turn: float) -> Probes:
+    """Probes at the ends of the longest side of a box; the second turns about that side."""
+    k = int(np.argmax(high - low))
+    middle, u = 0.5 * (low + high), np.eye(3)[k]
+    ends = [middle + s * (0.5 * (high - low)[k]) * u for s in (-1.0, 1.0)]
+    first, second = (",".join(f"{x!r}" for x in end.tolist()) for end in ends)
+    axis = ",".join(f"{x:g}" for x in u)
+    return probe_io.from_words(
+        [f"name=first centre={first}", f"name=second centre={second} axis={axis} degrees={_DEGREES + turn!r}"]
+    )
+
+
+def probes(case: Case, file: Path | None, words: str, turn: float) -> Case:
+    """Return a case with a user's probes in place of its own, if there are any."""
+    lines = [line.strip() for line in words.split(";") if line.strip()]
+    if file is None and not lines:
+        return case
+    if file is not None and lines:
+        raise ValueError("probes and probe must not be given together; got both. Leave one of them out")
+    if turn != 0.0:
+        raise ValueError(f"turn must be 0 for your own probes; got {turn:g}. Say it as degrees of a probe")
+    found = probe_io.from_words(lines) if file is None else probe_io.read(file)
+    return replace(case, name="own", probes=found, painted=None, recipe=Recipe())
+
+
+def poses(case: Case, file: Path | None) -> Case:
+    """Return a case whose probes go through a user's sequence, if there is one."""
+    return case if file is None else replace(case, name="own", poses=probe_io.read_poses(file, case.probes))
+
+
+def weighted(case: Case, paint: Path | None, recipe: Recipe | None) -> Case:
+    """Return a case with weights that are painted, or made by a recipe, its reach in sizes of the shape."""
+    V, names = case.mesh.vertices, case.probes.names
+    if recipe is not None:
+        if paint is not None:
+            raise ValueError(f"weights must be auto where they are painted; got {recipe.kind}. Leave it out")
+        return replace(case, painted=None, recipe=replace(recipe, reach=recipe.reach * _size(V)))
+    if paint is None:
+        return case
+    values = painted.read(paint, len(V))
+    if values.shape[1] != len(names):
+        raise ValueError(
+            f"paint must be weights of {len(names)} probes, {', '.join(names)}; got {values.shape[1]} in "
+            f"{paint}. Add or leave out columns"
+        )
+    return replace(case, painted=normalised(values, "capped"))

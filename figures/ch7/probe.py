@@ -1,0 +1,197 @@
+"""Figures 7.2 to 7.4 of the book, and what the papers show of its probe deformer."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Literal
+
+from lietool.figure import Drawing, Param, Plate, Time, figure
+
+from . import _probe_examples as example_
+from . import _probe_own as own
+from . import _probe_pages as pages
+from ._probe_case import WAYS, Moving, Recipe
+
+_KINDS = ("inverse-distance", "cutoff", "gaussian")
+
+
+@figure(
+    plates={
+        "B7.3": Plate(
+            title="Probes at rest and moved",
+            equations=("7.9",),
+            caption=(
+                "Four probes (frames) are put into a duck. The one in the head turns, grows and is drawn "
+                "forward and up, the one in the tail turns and grows; the two in the body stay. Every vertex "
+                "is moved by the blend of the four motions, weighted by its distances to the probes."
+            ),
+        ),
+        "B7.2": Plate(
+            title="A bar under the blend of two probes",
+            equations=("7.9",),
+            caption=(
+                "The lower probe stays, the upper one turns and goes where it is when the line between both "
+                "is bent to an arc of equal length; the bar follows by the blend of both motions. At 120 "
+                "degrees it has 89 per cent of its volume by rotation vectors, and 52 by the linear blend of "
+                "the same matrices (below), which thins it."
+            ),
+            params={"example": "bend", "way": "phi-se", "beside": "linear"},
+        ),
+        "B7.4": Plate(
+            title="A vortex by a probe",
+            equations=("7.9", "K 9"),
+            caption=(
+                "A disc of particles, coloured like the pieces of a cake, and a probe in its middle, which "
+                "turns by 450 degrees and sinks. The nearer a particle is to the probe, the further it is "
+                "taken down and around, by more than a full turn in the middle: a whirlpool with spiral arms."
+            ),
+            params={"example": "vortex"},
+        ),
+        "K2a": Plate(
+            title="Four strings and two probes, one turned beyond 2 pi",
+            equations=("K 9", "K 3"),
+            caption=(
+                "The lower probe stays; the upper one turns by 480 degrees and is moved. By rotation vectors "
+                "the strings wind around each other by all of the 480 degrees. Unit quaternions know "
+                "nothing of the full turn: at the right the strings are wound by 120 degrees."
+            ),
+            params={"example": "strings"},
+        ),
+        "K2b": Plate(
+            title="An arm turned by 390 degrees",
+            equations=("K 9", "K 3"),
+            caption=(
+                "A probe at the tip of an arm turns by 390 degrees about an axis a little off the arm's; the "
+                "weights rise along the arm from 0 to 1. By rotation vectors the arm swirls. A quaternion is "
+                "the same after a full turn but for its sign: what is left are 30 degrees, and the arm "
+                "hardly moves. Plotted is by how much each place along the arm has turned."
+            ),
+            params={"example": "octopus"},
+        ),
+        "M1": Plate(
+            title="A mesh with several probes",
+            equations=("M 5",),
+            caption=(
+                "A cactus with a probe in its pot, which stays, one at the top, which turns by 110 degrees "
+                "about the vertical, and one in each arm, which leans outwards; one of these also grows. Ribs, "
+                "arms and flower follow."
+            ),
+            params={"example": "cactus"},
+        ),
+        "M2": Plate(
+            title="Particles stirred by probes",
+            equations=("M 5",),
+            caption=(
+                "The deformer moves points, and needs no mesh: a block of particles in coloured layers is "
+                "stirred by two probes, each turned by 430 degrees."
+            ),
+            params={"example": "particles"},
+        ),
+    },
+    time=Time("t", 0.0, 1.0),
+    mesh=True,
+)
+def probe(
+    example: Annotated[
+        Literal["duck", "cactus", "bend", "vortex", "strings", "octopus", "particles"],
+        Param("which shape with its probes, where none of your own is given"),
+    ] = "duck",
+    way: Annotated[
+        Literal["phi-so", "phi-se", "alexa", "polar-quaternion", "dual-quaternion", "linear"],
+        Param("of blending; only phi-so keeps turns beyond a half turn"),
+    ] = "phi-so",
+    beside: Annotated[
+        Literal["none", "phi-so", "phi-se", "alexa", "polar-quaternion", "dual-quaternion", "linear"],
+        Param("another way of blending beside it", only=("example", "bend", "strings", "octopus")),
+    ] = "polar-quaternion",
+    t: Annotated[
+        float, Param("how far the probes are on their way, or through your sequence", low=0.0, high=1.0)
+    ] = 1.0,
+    turn: Annotated[
+        float,
+        Param("turned by so much more than the example says: its main probe", "deg", -360.0, 720.0),
+    ] = 0.0,
+    weights: Annotated[
+        Literal["auto", "inverse-distance", "cutoff", "gaussian"],
+        Param("of the probes at a point, by its distance to them; auto is the example's own, or 1/r^2"),
+    ] = "auto",
+    power: Annotated[
+        float,
+        Param("of the distance in the weights", low=0.25, high=8.0, only=("weights", *_KINDS[:2])),
+    ] = 2.0,
+    reach: Annotated[
+        float,
+        Param(
+            "where a cutoff ends, or the width of a Gaussian, over half the diagonal of the shape's box",
+            low=0.02,
+            high=4.0,
+            only=("weights", *_KINDS[1:]),
+        ),
+    ] = 0.5,
+    sum: Annotated[
+        Literal["auto", "unity", "softmax", "capped", "none"],
+        Param(
+            "of the weights at a point: made 1, or by softmax, or at most 1; auto: 1 where all weights count",
+            only=("weights", *_KINDS),
+        ),
+    ] = "auto",
+    distance: Annotated[
+        Literal["straight", "surface"],
+        Param("straight, or along the surface", only=("weights", *_KINDS)),
+    ] = "straight",
+    origin: Annotated[
+        Literal["centre", "world"],
+        Param("what motions are expressed about: the probes' centres, or as printed the origin of the world"),
+    ] = "centre",
+    steps: Annotated[
+        int, Param("stages that are shown", low=2, high=7, only=("example", "bend", "strings"))
+    ] = 4,
+    around: Annotated[
+        float, Param("seen from so much further round to the left", "deg", -180.0, 180.0)
+    ] = 0.0,
+    above: Annotated[float, Param("seen from so much further above", "deg", -60.0, 60.0)] = 0.0,
+    up: Annotated[Literal["z", "y"], Param("which axis of your shape is drawn upwards")] = "z",
+    shape: Annotated[
+        Path | None,
+        Param("your own mesh (obj, ply, stl, off, glb) or cloud of points (ply, xyz)", positional=1),
+    ] = None,
+    probes: Annotated[Path | None, Param("your probes, in a file .toml or .json")] = None,
+    probe: Annotated[
+        str,
+        Param("your probes in words, with ; between them: 'name=tip centre=0,0,2 axis=0,0,1 degrees=400'"),
+    ] = "",
+    poses: Annotated[
+        Path | None,
+        Param("a sequence of poses of the probes, in a file .toml or .json, which t goes through"),
+    ] = None,
+    paint: Annotated[
+        Path | None,
+        Param(
+            "weights of the probes at the points: columns in a .txt or .csv, or painted on a ply, obj, glb"
+        ),
+    ] = None,
+) -> Drawing:
+    """A shape moved by probes: frames that take the points around them along, each by its weight.
+
+    What to look for: near a probe the shape moves as the probe does; between
+    probes their motions are blended. Rotations are added up as vectors, axis times
+    angle, so that a turn by more than 360 degrees means what it says; quaternions
+    and matrices forget whole turns. Probes at rest are pale, moved ones coloured.
+    """
+    case = example_.example(example, turn) if shape is None else own.shape(shape, turn)
+    case = own.poses(own.probes(case, probes, probe, turn), poses)
+    recipe = None if weights == "auto" else Recipe(weights, power, reach, sum, distance)
+    case = own.weighted(case, paint, recipe)
+    case = replace(case, look=replace(case.look.turned(around, above), y_up=up == "y"))
+    moving = Moving(case, WAYS[way], origin == "world")
+    other = None if beside == "none" else Moving(case, WAYS[beside], origin == "world")
+    match case.name:
+        case "bend":
+            drawing = pages.row(moving, other, t, steps)
+        case "strings":
+            drawing = pages.columns(moving, other, t, steps)
+        case "octopus":
+            drawing = pages.compare(moving, other, t)
+        case _:
+            drawing = pages.pair(moving, t)
+    fps = 24.0 if case.poses is None else case.poses.fps
+    return replace(drawing, notes=moving.notes, moments=moving.moments, fps=fps)
