@@ -103,7 +103,7 @@ def read(path: str | Path) -> Probes:
         If the file cannot be read, or something in it is wrong: with the probe and the key.
     """
     place = Place("probe_io.read", Path(path))
-    return _probes(_content(place))
+    return _probes(content(place))
 
 
 def read_poses(path: str | Path, probes: Probes) -> Poses:
@@ -127,7 +127,7 @@ def read_poses(path: str | Path, probes: Probes) -> Poses:
     ValueError
         If the file cannot be read, or something in it is wrong: with the pose, the probe and the key.
     """
-    top = _content(Place("probe_io.read_poses", Path(path)))
+    top = content(Place("probe_io.read_poses", Path(path)))
     top.only(("pose", "fps"))
     fps = float(top.numbers("fps", ())) if "fps" in top.data else 24.0
     if not 0.0 < fps <= 1000.0:
@@ -196,8 +196,22 @@ def _value(text: str) -> object:
     return numbers if len(numbers) > 1 else numbers[0]
 
 
-def _content(place: Place) -> Table:
-    """Return the outermost table of a file."""
+def content(place: Place) -> Table:
+    """Return the outermost table of a file .toml or .json, for whoever reads such files.
+
+    Parameters
+    ----------
+    place : Place
+
+    Returns
+    -------
+    table : Table
+
+    Raises
+    ------
+    ValueError
+        If the file has another ending, cannot be read or is broken.
+    """
     ending = place.path.suffix.lower()
     if ending not in (".toml", ".json"):
         place.fail("a file .toml or .json", ending or "no ending", remedy="Name it after what it holds.")
