@@ -92,6 +92,7 @@ def prepare(
     F: ArrayLike,
     way: ways.Way = ways.PHI_SO,
     *,
+    maps: ArrayLike | None = None,
     stated: Stated | None = None,
     pins: ArrayLike = (),
 ) -> Prepared:
@@ -108,6 +109,9 @@ def prepare(
     F : array_like of int, shape (m, 3)
     way : Way
         Of `ways`.
+    maps : (N, m, 3, 3), GL+, optional
+        The linear map of each face to each target, where more is known of it than what a face with its normal
+        tells; those are taken unless given.  A target is met only as far as they agree about it.
     stated : mapping, optional
         For a target, and a face of it, a rotation vector that the face's is to be the nearest to:
         `adjacency.turned` states turns.  The others continue these.
@@ -121,7 +125,8 @@ def prepare(
     Raises
     ------
     ValueError
-        If a target does not fit the rest, a face of either has no area, or what is stated is of no use.
+        If a target does not fit the rest, a face of either has no area, a map has no place or det <= 0, or
+        what is stated is of no use.
     """
     where = "shape_blend.prepare"
     V, F = laplacian.checked(where, rest, F)
@@ -132,18 +137,18 @@ def prepare(
         got = f"some for {way.name}"
         checks.fail(where, "stated", "left out for ways without rotation vectors", got, None)
     stitching = stitch.prepare(V, F, pins)
-    maps = np.stack([local_maps.maps(stitching.frames, U) for U in shapes])
+    linear = _maps(where, maps, stitching.frames, shapes)
     # One target at a time: the transformations of all at once would be larger than all that is kept.
-    encoded = [way.encode(homogeneous(A)) for A in maps]
+    encoded = [way.encode(homogeneous(A)) for A in linear]
     params, able = np.stack([p for p, _ in encoded]), np.stack([a for _, a in encoded])
     lifts: tuple[adjacency.Lift, ...] = ()
     if _has_vectors(way):
-        lifts = _lifts(where, maps, F, stated or {})
+        lifts = _lifts(where, linear, F, stated or {})
         params[..., :3] = [lift.vectors for lift in lifts]
     lacking = np.flatnonzero(~able.all(axis=0))
-    spare, _ = ways.POLAR_QUATERNION.encode(homogeneous(maps[:, lacking]))
+    spare, _ = ways.POLAR_QUATERNION.encode(homogeneous(linear[:, lacking]))
     centres = np.stack([stitching.barycentres(U) for U in (V, *shapes)])
-    return Prepared(way, shapes, maps, params, able, spare, lacking, lifts, stitching, centres)
+    return Prepared(way, shapes, linear, params, able, spare, lacking, lifts, stitching, centres)
 
 
 def solve(prepared: Prepared, weights: ArrayLike, positions: ArrayLike | None = None) -> Blended:
@@ -249,6 +254,16 @@ def _targets(where: str, targets: Sequence[ArrayLike], V: Array, F: Index) -> Ar
             topology.fail(where, f"target {k}", "a mesh with an area in every face", got, remedy)
         shapes.append(U)
     return np.stack(shapes)
+
+
+def _maps(where: str, maps: ArrayLike | None, at: local_maps.Frames, shapes: Array) -> Array:
+    if maps is None:
+        return np.stack([local_maps.maps(at, U) for U in shapes])
+    A = checks.array(where, "maps", maps, (3, 3))
+    if A.shape != (len(shapes), len(at.faces), 3, 3):
+        must = f"one for each of {len(shapes)} targets and {len(at.faces)} faces"
+        checks.fail(where, "maps", must, f"shape {A.shape}", None)
+    return A
 
 
 def _lifts(where: str, maps: Array, F: Index, stated: Stated) -> tuple[adjacency.Lift, ...]:
