@@ -102,6 +102,12 @@ def weigh(mesh: Mesh, centres: Array, recipe: Recipe) -> Array:
 
 def normalised(w: Array, total: str) -> Array:
     """Return weights (n, k) with their sums made what is wanted."""
+    lost = np.sum(w, axis=1) == 0.0
+    if total == "unity" and np.any(lost):
+        raise ValueError(
+            f"sum must be capped where weights are all 0; got unity with {int(lost.sum())} such points of "
+            f"{len(w)}, first {int(np.argmax(lost))}. Write --sum capped, or let weights reach farther"
+        )
     return _SUMS[total](w)
 
 
@@ -268,8 +274,9 @@ def _check(names: Sequence[str], B: Array, whole: Array) -> None:
             orientation.refuse(motion)
         except ValueError:
             d = np.linalg.svd(motion[:3, :3], compute_uv=False)
-            turned = np.linalg.det(motion[:3, :3]) < 0.0
-            what = "turns space inside out" if turned else "flattens space"
+            inside_out = np.linalg.det(motion[:3, :3]) < 0.0
+            d[2] *= -1.0 if inside_out else 1.0
+            what = "turns space inside out" if inside_out else "flattens space"
             raise ValueError(
                 f"probe {name} must have a motion with det > 0; got one that {what}, singular values "
                 f"{', '.join(f'{x:.3g}' for x in d)}. Mend it, or write --way linear"
@@ -277,4 +284,4 @@ def _check(names: Sequence[str], B: Array, whole: Array) -> None:
         try:
             turns.wound(so3.log(polar.rotation(motion[:3, :3])), n)
         except ValueError as error:
-            raise ValueError(f"probe {name}: {error}") from None
+            raise ValueError(f"probe {name}: {str(error).replace(' at index ()', '')}") from None

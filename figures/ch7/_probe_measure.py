@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from lietool.lie import so3
+from lietool.lie import quaternion, so3
 from lietool.mesh import solids
 from lietool.mesh.surface import Mesh
 
@@ -37,22 +37,20 @@ def winding(points: Array) -> float:
     return float(np.degrees(angle[-1] - angle[0]))
 
 
-def twist(points: Array) -> Array:
-    """Return by how many degrees (n,) each place along the octopus's arm has turned, from the root on."""
+def twist(points: Array, axis: Array) -> Array:
+    """Return by how many degrees (n,) each place along the octopus's arm has turned about an axis.
+
+    It is counted from the root on, and on beyond full turns.
+    """
     s = solids.octopus()
     rings = [ring for ring in _rings(s.of("arm 0"), s.along) if len(ring) > 5]
-    R = np.stack([_turned(s.vertices[ring], points[ring]) for ring in rings])
-    x = so3.log_along(R, np.zeros(3))
-    size = np.degrees(np.linalg.norm(x, axis=1))
+    q = quaternion.from_matrix(np.stack([_turned(s.vertices[ring], points[ring]) for ring in rings]))
+    u = axis if np.any(axis) else s.axes["arm 0"][-1] - s.axes["arm 0"][0]
+    # What is left of each rotation without the part that tilts the axis.
+    angle = 2.0 * np.arctan2(q[:, 1:] @ (u / np.linalg.norm(u)), q[:, 0])
+    angle = np.unwrap(np.append(0.0, angle))[1:]
     places = np.array([s.along[ring].mean() for ring in rings])
-    # Against the axis counts as less than nothing.
-    axis = x[np.argmax(size)]
-    sign = np.where(x @ axis >= 0.0, 1.0, -1.0) * _sense(axis, s.axes["arm 0"])
-    return np.interp(ALONG, places, sign * size)
-
-
-def _sense(x: Array, line: Array) -> float:
-    return 1.0 if x @ (line[-1] - line[0]) >= 0.0 else -1.0
+    return np.interp(ALONG, places, np.degrees(angle))
 
 
 def _turned(P: Array, Q: Array) -> Array:

@@ -31,7 +31,7 @@ def shape(path: Path, turn: float) -> Case:
     before, after, dots = style.BEFORE, style.AFTER, 0.0
     if not len(mesh.faces):
         dots, before = float(np.clip(480.0 / np.sqrt(len(mesh.vertices)), *_DOTS)), style.BEFORE_EDGE
-    look = Look((1.0, 0.5, 0.35), 0.4 * size, (before,), (after,), dots=dots)
+    look = Look((1.0, 0.5, 0.35), 0.33 * size, (before,), (after,), dots=dots)
     return Case("own", mesh, _two(low, high, turn), look, Recipe())
 
 

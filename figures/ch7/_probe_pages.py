@@ -52,8 +52,9 @@ def _probes(case: Case, moment: Moment, camera: Camera, moved: bool, arcs: bool 
             u, color = x @ up / np.linalg.norm(x), style.INK if look.dots else style.MARK
             # Around that end of the axis that is seen better.
             seen = 1.0 if camera.axes.sum(axis=0) @ u >= 0.0 else -1.0
-            center = frame[:3, 3] + 0.8 * seen * look.probe * u
-            records += mesh_look.turn(center, x @ up, 0.5 * look.probe, camera, color=color)
+            center = frame[:3, 3] + (0.0 if look.dots else 0.8 * seen * look.probe) * u
+            text = "" if look.dots else None
+            records += mesh_look.turn(center, x @ up, 0.5 * look.probe, camera, color=color, text=text)
     return tuple(mesh_look.inside(records, 0.9))
 
 
@@ -74,16 +75,19 @@ def pair(moving: Moving, t: float) -> Drawing:
         View(_probes(case, rest, camera, False), camera, boxes[0]),
         View(_shape(case, moment.points, camera, 1.0), camera, boxes[1]),
         View(_probes(case, moment, camera, True), camera, boxes[1]),
-        View((*mesh_page.titles(boxes, ["at rest", _moved(case, t)]), mesh_page.legend(case.said))),
+        View((*mesh_page.titles(boxes, ["at rest", _moved(case, t, moment)]), mesh_page.legend(case.said))),
     ]
     return Drawing(Picture(tuple(views)), _numbers(moving, moment), case.mesh.moved(moment.points))
 
 
-def _moved(case: Case, t: float) -> str:
+def _moved(case: Case, t: float, moment: Moment) -> str:
     """What is said over a shape that has moved."""
     if case.poses is not None:
         count = len(case.poses.frames)
         return f"pose {number(1.0 + t * (count - 1), 1)} of {count}"
+    if case.look.dots and np.degrees(np.linalg.norm(moment.vectors, axis=1).max()) > _LEAST:
+        # There is no room for it among the points.
+        return f"turned by {_degrees(moment)}"
     return "moved" if t == 1.0 else f"moved, $t = {number(t, 2)}$"
 
 
@@ -214,7 +218,7 @@ def compare(moving: Moving, beside: Moving | None, t: float) -> Drawing:
         views.append(View(_shape(case, m.points, camera, float(k > 0)), camera, box))
         views.append(View(_probes(case, m, camera, k > 0), camera, box))
     along = measure.ALONG
-    twists = [measure.twist(m.points) for m in moments]
+    twists = [measure.twist(m.points, m.vectors[0]) for m in moments]
     texts = ["at rest", *(WORDS[each.way.name] for each in ways)]
     labels = [
         Label(text, (box[0] + box[2] / 2.0, base, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")

@@ -72,8 +72,8 @@ _KINDS = ("inverse-distance", "cutoff", "gaussian")
             equations=("M 5",),
             caption=(
                 "A cactus with a probe in its pot, which stays, one at the top, which turns by 110 degrees "
-                "about the vertical, and one in each arm, which leans outwards; one of these also grows. Ribs, "
-                "arms and flower follow."
+                "about the vertical, and one in each arm, which leans outwards; one of these also grows. "
+                "Ribs, arms and flower follow."
             ),
             params={"example": "cactus"},
         ),
