@@ -21,6 +21,13 @@ _ENERGIES = {
     "point-similarity": energy.POINT_SIMILARITY,
     "symmetric": energy.FROBENIUS,
 }
+NAMES = {
+    "frobenius": "$E^F$",
+    "point": "$E^P$",
+    "similarity": "$E^R$",
+    "point-similarity": "$E^S$",
+    "symmetric": "symmetrised $E^F$",
+}
 # At so many moments of [0, 1] things are measured; half of them is one of them.
 MOMENTS = 41
 # How high the barycentre is thrown, over the size of the shape.
@@ -79,6 +86,8 @@ class Led:
     edge: tuple[int, int] | None = None
     line: Line | None = None
     barycentre: constraint.Path | None = None
+    # Whether the edge was asked for, and does not only say how the whole is turned.
+    named: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +124,32 @@ class Way:
     def energy(self) -> Array:
         """The energy over the area of the source."""
         return self.measured.energy / topology.areas(self.pair.source, self.pair.faces).sum()
+
+    def error(self, similar: bool) -> Array:
+        """E^F of the shape at all moments, over the area of the source; or E^R, of which angles are no part.
+
+        One measure for ways that other energies have found.
+        """
+        maps, weights = self.prepared.maps, topology.areas(self.pair.source, self.pair.faces)
+        homotopy, B = HOMOTOPIES[self.choice.homotopy], self.measured.jacobians
+        how = energy.SIMILARITY if similar else energy.FROBENIUS
+        each = [
+            energy.error(b, homotopy(maps, t, self.theta), how) @ weights
+            for b, t in zip(B, self.measured.t.tolist(), strict=True)
+        ]
+        return np.array(each) / weights.sum()
+
+    @cached_property
+    def consistent(self) -> Array:
+        """The angles of the local maps, consistent over the mesh."""
+        return local_angles(self.pair, replace(self.choice, angles="consistent"), self.prepared.maps)
+
+    @cached_property
+    def turn(self) -> Array:
+        """By which angle the edge that is given has turned since the beginning, degrees."""
+        a, b = (self.led.edge if self.led.line is None else self.led.line.ends) or (0, 1)
+        z = (self.measured.vertices[:, a] - self.measured.vertices[:, b]) @ np.array([1.0, 1.0j])
+        return np.degrees(np.unwrap(np.angle(z / z[0])))
 
     @cached_property
     def asymmetry(self) -> Array:
@@ -229,7 +264,7 @@ def _led(pair: Shape, choice: Choice, theta: Array, local: Callable[[Array], Arr
             line = Line(edge, _swung(vector, np.deg2rad(_SWING)))
             return Led((constraint.Barycentre(center), line.constraint), line=line, barycentre=center)
         held = constraint.Edge(*edge, _turning(pair, choice, theta, *edge))
-        return Led((constraint.Barycentre(center), held), edge=edge, barycentre=center)
+        return Led((constraint.Barycentre(center), held), edge=edge, barycentre=center, named=True)
     if not choice.forgives:
         return Led((constraint.Barycentre(center),))
     a, b = (int(v) for v in pair.faces[start, :2])

@@ -7,6 +7,8 @@ import numpy as np
 from lietool.interp import compatible
 from lietool.mesh import io, outline_io, shapes, topology
 
+from . import _swallow
+
 _MESHES = (".obj", ".off", ".ply")
 _COUNT = 500
 
@@ -25,7 +27,7 @@ def pair(example: str, source: Path | None, target: Path | None) -> shapes.Shape
         raise ValueError(f"source and target must be given together; got {got}. Name the other file too")
     if example == "three-triangles":
         return _shape(np.array(_POINTS), np.array(_MOVED), _turned(np.array(_TRIANGLES) - 1))
-    return shapes.SHAPES[example]()
+    return _swallow.snake() if example == "swallow" else shapes.SHAPES[example]()
 
 
 def _turned(faces: np.ndarray) -> np.ndarray:

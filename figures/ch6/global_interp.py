@@ -106,9 +106,10 @@ _WHOLE = ("stage", "global", "morph", "frames")
                 "up for large ones: the least determinant falls further below 0 than under E^F, below."
             ),
             params={
-                "example": "fish",
-                "stage": "frames",
+                "example": "swallow",
+                "stage": "global",
                 "constraint": "loci",
+                "winding": 0,
                 "energy": "point",
                 "beside": "frobenius",
             },
@@ -126,7 +127,7 @@ _WHOLE = ("stage", "global", "morph", "frames")
                 "stage": "frames",
                 "constraint": "loci",
                 "energy": "point-similarity",
-                "beside": "similarity",
+                "beside": "frobenius",
             },
         ),
         "G6.3": Plate(
@@ -156,8 +157,8 @@ _WHOLE = ("stage", "global", "morph", "frames")
                 "they are the same."
             ),
             params={
-                "example": "cat",
-                "stage": "frames",
+                "example": "swallow",
+                "stage": "global",
                 "constraint": "loci",
                 "winding": 0,
                 "energy": "symmetric",
@@ -194,7 +195,7 @@ def global_interp(
         ),
     ] = "global",
     example: Annotated[
-        Literal["gecko", "fish", "snake", "cat", "three-triangles"], Param("which pair of shapes")
+        Literal["gecko", "fish", "snake", "cat", "swallow", "three-triangles"], Param("which pair of shapes")
     ] = "gecko",
     t: Annotated[
         float, Param("the moment; with ends, where from nose to tail a band is marked", low=0.0, high=1.0)
@@ -211,7 +212,7 @@ def global_interp(
             "a second row, by this energy with consistent angles; or E^F with the same angles above, and "
             "with consistent ones below; or E^R and a share of E^F, barycentre thrown, only the direction of "
             "an edge given",
-            only=("stage", "frames"),
+            only=("stage", "global", "frames"),
         ),
     ] = "none",
     homotopy: Annotated[
@@ -277,6 +278,8 @@ def global_interp(
             return pages.maps(pair, choice, t)
         case "local":
             return pages.local(pair, choice, t)
+        case "global" if beside != "none":
+            return pages.beside(pair, choice, beside, t)
         case "global":
             return pages.whole(pair, choice, t)
         case "morph":
