@@ -35,10 +35,6 @@ COLLAPSED = 1e-12
 """A face is collapsed where its smaller singular value is at most so much of its larger one."""
 
 
-LARGEST = 1e70
-"""Of coordinates: squares of areas of larger meshes overflow."""
-
-
 @dataclass(frozen=True, eq=False)
 class Distortion:
     """The singular values of all faces, and what follows from them.
@@ -260,19 +256,9 @@ def folds(rest: ArrayLike, F: ArrayLike, deformed: ArrayLike) -> Index:
     return pairs[(here < 0.0) & (there < 0.0)]
 
 
-def bounded(where: str, name: str, V: ArrayLike) -> Array:
-    """Return V as finite points (n, 3) of at most LARGEST, so that what is computed of them is finite."""
-    a = topology.vertices(where, name, V, 3)
-    size = np.max(np.abs(a), initial=0.0)
-    if size > LARGEST:
-        topology.fail(where, name, f"at most {LARGEST:g} in size", f"{size:.3g}", "Take another unit.")
-    return a
-
-
 def _pair(where: str, rest: ArrayLike, F: ArrayLike, deformed: ArrayLike) -> tuple[Array, Index, Array]:
-    V = bounded(where, "rest", rest)
-    V, F = laplacian.checked(where, V, F)
-    U = bounded(where, "deformed", deformed)
+    V, F = laplacian.checked(where, topology.vertices(where, "rest", rest, 3), F)
+    U = topology.vertices(where, "deformed", deformed, 3)
     if len(U) != len(V):
         topology.fail(where, "deformed", f"{len(V)} vertices, as many as at rest", f"{len(U)}")
     return V, F, U

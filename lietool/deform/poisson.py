@@ -138,7 +138,7 @@ def prepare(
         is not finite.
     """
     where = "poisson.prepare"
-    V, F = laplacian.checked(where, distortion.bounded(where, "V", V), F)
+    V, F = laplacian.checked(where, V, F)
     sets = [_vertices(where, "pins", pins, len(V))]
     if not len(handles):
         topology.fail(where, "handles", "at least one set of vertices", "none")

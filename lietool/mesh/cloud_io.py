@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from lietool.lie import checks
-from lietool.mesh import _surface_ply
+from lietool.mesh import _surface_ply, topology
 from lietool.mesh.files import Place, read_bytes, read_text
 from lietool.mesh.surface import Mesh
 
@@ -67,7 +67,7 @@ def read(path: str | Path) -> Mesh:
         mesh = _decode_xyz(place, read_text(place))
     else:
         place.fail("a cloud, .xyz or .ply", ending or "no ending", remedy="Save it as one of these.")
-    bad = np.any(~(np.abs(mesh.vertices) <= 1e100), axis=1)
+    bad = np.any(~(np.abs(mesh.vertices) <= topology.LARGEST), axis=1)
     if bad.any():
         (k,) = checks.first(bad)
         place.fail("a cloud of finite points", f"{mesh.vertices[k].tolist()} as point {k}")

@@ -65,7 +65,7 @@ def prepare(V: ArrayLike, F: ArrayLike) -> Prepared:
     Raises
     ------
     ValueError
-        If V or F is none, or a triangle has area 0.
+        If V or F is none, or a triangle has area 0 or nearly so.
     """
     V, F = laplacian.checked("geodesic.prepare", V, F)
     state = surface.health(V, F)
@@ -74,17 +74,26 @@ def prepare(V: ArrayLike, F: ArrayLike) -> Prepared:
     warm = _diagonal(M) + _time(V, F, state.part) * L
     ends, count = _edges(F)
     cold = np.union1d(ends[count == 1].ravel(), state.unused)
-    cool = sparse.factor(warm, cold) if state.boundary else None
+    cool = _factor(warm, cold) if state.boundary else None
     held = np.unique(state.part, return_index=True)[1]
     held = np.union1d(held, state.unused)
     return Prepared(
         state.part,
         laplacian.gradient(V, F),
         laplacian.divergence(V, F),
-        sparse.factor(warm, state.unused),
+        _factor(warm, state.unused),
         cool,
-        sparse.factor(L, held),
+        _factor(L, held),
     )
+
+
+def _factor(A: Any, fixed: Index) -> sparse.Factor:
+    """Factor one of the systems, each of which is regular but for rounding."""
+    try:
+        return sparse.factor(A, fixed)
+    except ValueError:
+        got = "some so thin that the system is singular to rounding"
+        topology.fail("geodesic.prepare", "F", "triangles with an area", got, "Make the mesh even.")
 
 
 def solve(prepared: Prepared, sources: Sequence[ArrayLike]) -> Array:

@@ -114,7 +114,7 @@ def encode(mesh: Mesh, ending: str) -> bytes:
 
 
 def _check(place: Place, mesh: Mesh) -> None:
-    bad = np.any(~(np.abs(mesh.vertices) <= 1e100), axis=1)
+    bad = np.any(~(np.abs(mesh.vertices) <= topology.LARGEST), axis=1)
     if bad.any():
         (k,) = checks.first(bad)
         place.fail("a mesh of finite vertices", f"{mesh.vertices[k].tolist()} as vertex {k}")

@@ -10,13 +10,17 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 
+LARGEST = 1e70
+"""Of coordinates in space: squares of the areas of larger meshes overflow."""
+
+
 def fail(where: str, name: str, must: str, got: str, remedy: str = "") -> NoReturn:
     """Raise the house's one-line ValueError."""
     raise ValueError(f"{where}: {name} must be {must}; got {got}.{' ' + remedy if remedy else ''}")
 
 
 def vertices(where: str, name: str, V: ArrayLike, n: int = 2) -> Array:
-    """Return V as finite float64 points (k, n).
+    """Return V as finite float64 points (k, n), in space of at most LARGEST.
 
     Parameters
     ----------
@@ -33,7 +37,7 @@ def vertices(where: str, name: str, V: ArrayLike, n: int = 2) -> Array:
     Raises
     ------
     ValueError
-        If V has another shape or is not finite.
+        If V has another shape, is not finite or too large.
     """
     try:
         a = np.asarray(V, float)
@@ -45,6 +49,8 @@ def vertices(where: str, name: str, V: ArrayLike, n: int = 2) -> Array:
     if bad.any():
         k = int(np.argmax(bad))
         fail(where, name, "finite", f"{a[k].tolist()} at vertex {k}")
+    if n == 3 and (size := max(np.max(a, initial=0.0), -np.min(a, initial=0.0))) > LARGEST:
+        fail(where, name, f"at most {LARGEST:g} in size", f"{size:.3g}", "Take another unit.")
     return a
 
 

@@ -241,7 +241,7 @@ FLAT = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]], float)
         (lambda V, F: local_maps.frames(FLAT, [[0, 1, 2]]), "F must be triangles with an area"),
         (
             lambda V, F: local_maps.maps(local_maps.frames(V, F), V * [1, 0, 0]),
-            "U must be a mesh with an area in every face; got faces 0, 1, 2, 3 and 28 more",
+            "U must be a mesh with an area in every face; got face 0, 1, 2, 3 and 28 more",
         ),
         (
             lambda V, F: local_maps.maps(local_maps.frames(V, F), V[:9]),

@@ -110,3 +110,10 @@ def test_broken_arguments_are_refused():
         ValueError, match=r"^geodesic.prepare: F must be triangles with an area; got area 0 in face"
     ):
         geodesic.heat(V, np.vstack([F, [[0, 0, 1]]]), [0])
+
+
+def test_a_mesh_of_needles_is_refused_by_this_name():
+    V, F = sphere(2)
+    V += 0.1 * np.random.default_rng(1).normal(size=V.shape)
+    with pytest.raises(ValueError, match=r"^geodesic\.prepare: F must be triangles [^\n]* so thin [^\n]*$"):
+        geodesic.prepare(V * [1e-8, 1e-8, 1.0], F)

@@ -89,3 +89,10 @@ def test_a_moved_mesh_keeps_the_rest():
         mesh.moved(CUBE[:7])
     with pytest.raises(ValueError, match=r"must be finite; got \[nan, 0.0, 0.0\] at vertex 0\."):
         mesh.moved(np.where(np.arange(24).reshape(8, 3) == 0, np.nan, CUBE))
+
+
+def test_a_mesh_so_large_that_squares_of_areas_overflow_is_refused():
+    V = 1e71 * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    must = r"^surface\.health: V must be at most 1e\+70 in size; got 1e\+71\. [^\n]*$"
+    with pytest.raises(ValueError, match=must):
+        surface.health(V, [[0, 1, 2]])
