@@ -50,7 +50,7 @@ RULES = {
     "mesh": _rule("mesh lie cache atomic", "numpy", "scipy trimesh skimage svgelements"),
     "interp": _rule("interp lie mesh", "numpy", "scipy skimage"),
     "deform": _rule("deform lie mesh", "numpy", "scipy skimage"),
-    "bench": _rule("bench lie mesh interp", "numpy mpmath", "scipy pytransform3d"),
+    "bench": _rule("bench lie mesh interp deform", "numpy mpmath", "scipy pytransform3d"),
     "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib av"),
     "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest"),
     "gallery": _rule("gallery " + _BELOW, "jinja2 markupsafe", "matplotlib"),

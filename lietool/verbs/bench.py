@@ -13,6 +13,7 @@ import click
 
 from lietool.verbs import (
     _bench_accuracy,
+    _bench_deform,
     _bench_interp,
     _bench_pairs,
     _bench_process,
@@ -39,6 +40,9 @@ for _subcommand in (
     _bench_interp.interp,
     _bench_interp.interp_work,
     _bench_pairs.pairs,
+    _bench_deform.deform,
+    _bench_deform.deform_work,
+    _bench_deform.meshes,
 ):
     command.add_command(_subcommand)
 
