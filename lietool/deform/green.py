@@ -165,9 +165,10 @@ def _logarithm(seen: cage_view.View) -> Array:
     a = r[[1, 2, 0]] + np.abs(seen.start)
     b = r[[2, 0, 1]] + np.abs(seen.end)
     a, b = np.maximum(a, cage_view.TINY), np.maximum(b, cage_view.TINY)
-    between = (a / seen.rho) * (b / seen.rho)
+    across = (seen.start < 0.0) & (seen.end > 0.0)
     apart = np.where(seen.end > 0.0, b / a, a / b)
-    return np.log(np.where((seen.start < 0.0) & (seen.end > 0.0), between, apart))
+    # Two logarithms: on the line of an edge the product of both quotients overflows.
+    return np.log(np.where(across, a / seen.rho, apart)) + np.log(np.where(across, b / seen.rho, 1.0))
 
 
 def _continue(cage: cage_view.Facets, x: Array, out: Index, phi: Array, psi: Array) -> None:

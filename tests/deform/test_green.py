@@ -80,6 +80,16 @@ def test_every_similarity_is_reproduced_wherever_a_point_is(cage, kind, away):
     np.testing.assert_allclose(green.solve(prepared, V @ S.T + t), x @ S.T + t, atol=1e-12)
 
 
+@pytest.mark.parametrize("size", [2.0**-200, 2.0**-20, 2.0**20, 2.0**200])
+def test_the_unit_of_length_does_not_matter(size):
+    V, F = dented()
+    x = np.concatenate([places(V, F, kind, 0.0) for kind in ("face", "edge", "vertex")])
+    one, other = green.prepare(x, V, F), green.prepare(size * x, size * V, F)
+    assert np.array_equal(one.outside, other.outside)
+    np.testing.assert_allclose(other.phi, one.phi, atol=1e-12)
+    np.testing.assert_allclose(other.psi / size, one.psi, atol=1e-12)
+
+
 def test_another_affine_map_is_not_reproduced():
     V, F = box()
     x = np.random.default_rng(2).uniform(0.2, 0.8, size=(20, 3))
