@@ -24,6 +24,7 @@ _TITLE, _SIDE, _TOP, _LOW = 846.0, 40.0, 780.0, 424.0
 _PLOT, _BACK = (120.0, 104.0, 350.0, 226.0), (120.0, 92.0, 330.0, 238.0)
 # Middles of the larger rings, and their radius.
 _LOUPES, _RADIUS = ((662.0, 206.0), (902.0, 206.0)), 112.0
+_LOUPES_BACK = ((718.0, 206.0), (1002.0, 206.0))
 # Which part of the errors is large, and how much of the size of a shape is seen larger.
 _WORST, _PART = 0.88, 0.085
 _BAR = (1056.0, 110.0, 26.0, 190.0)
@@ -57,7 +58,7 @@ def picture(strips: Sequence[Strip], t: float) -> scene.Picture:
         place = fit(every, (_SIDE + k * (width + _SIDE), _LOW, width, _TOP - _LOW))
         records += [*_ghosts(place, pair), *loci(place, panel.strip.way, t), *panel.draw(place)]
         records += held(place, panel.strip.way, panel.V, t)
-        records += _larger(panel, place, middle, parts.reach, _LOUPES[k])
+        records += _larger(panel, place, middle, parts.reach, (_LOUPES_BACK if both else _LOUPES)[k])
         records += _said(panel.strip, k, _SIDE + k * (width + _SIDE) + 0.5 * width, t)
     if both:
         plot = _morph_plots.Plot(
@@ -178,7 +179,7 @@ def _said(strip: Strip, k: int, middle: float, t: float) -> list[scene.Record]:
     said = rf"{count} of {len(turned)} flipped, least $\det B_i = {{{det.min():.2f}}}$"
     tone = style.WRONG if count else style.MUTED
     name = f"{strip.name[0]}, $t = {t:.2f}$"
-    left, anchor = (_SIDE + k * (560.0 + _SIDE) + 78.0, "ln") if strip.both else (middle, "cn")
+    left, anchor = (middle - 270.0 + 78.0, "ln") if strip.both else (middle, "cn")
     records: list[scene.Record] = [
         scene.Label(name, (left, _TITLE, 0.0), color[1], style.TITLE_TEXT, anchor=anchor, halo=False),
         text(said, left, _TITLE - 44.0, tone, anchor),

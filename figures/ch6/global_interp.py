@@ -19,15 +19,16 @@ _WHOLE = ("stage", "global", "morph", "frames")
             equations=("6.2",),
             caption=(
                 "The same moment: of all whole shapes, the one whose maps B_i(t) are nearest to the A_i(t) "
-                "in the sense of E^F. The triangles are stitched together again."
+                "in the sense of E^F. The triangles are stitched together again, and none is turned over."
             ),
         ),
         "B6.1": Plate(
             title="Two compatibly triangulated shapes",
             equations=("5.2",),
             caption=(
-                "The problem: a continuous way from the source to the target. Both have the same triangles, "
-                "and equal colours are corresponding places. A band of triangles is marked dark in both."
+                "The problem: a continuous way from the source to the target. Both have the same triangles. "
+                "Equal numbers stand at the same vertex, colours run from nose to tail, and a band of "
+                "triangles is dark in both."
             ),
             params={"stage": "ends"},
         ),
@@ -36,8 +37,9 @@ _WHOLE = ("stage", "global", "morph", "frames")
             equations=("5.2",),
             caption=(
                 "Five points and the triangles {1, 2, 5}, {2, 4, 5} and {2, 3, 4} in two poses. Each "
-                "triangle has its own linear map A_i. Below, each triangle about its centre: in the source "
-                "(dashed), and half way to the target (filled); and its map in numbers."
+                "triangle has its own linear map A_i. Below, each triangle about its centre: as it is in the "
+                "source (dashed), under A_i (filled), and half way, under A_i(1/2) (thin outline); beside it "
+                "A_i in numbers."
             ),
             params={"example": "three-triangles", "stage": "maps"},
         ),
@@ -47,7 +49,8 @@ _WHOLE = ("stage", "global", "morph", "frames")
             caption=(
                 "Half way, each triangle is where its own map has taken it: by the linear part A_i(t) and by "
                 "a translation that goes straight in a frame that turns with the whole. Neighbours do not "
-                "agree on where their common edge goes: the shape is torn apart."
+                "agree on where their common edge goes (in the ring: as either of them has it), and the "
+                "shape is torn apart."
             ),
             params={"stage": "local"},
         ),
@@ -55,9 +58,10 @@ _WHOLE = ("stage", "global", "morph", "frames")
             title="E^F and constraints that wind the other way",
             equations=("6.2",),
             caption=(
-                "Nose and tail must stay on the two curves, which turn the other way round than the local "
-                "maps do. E^F cannot forgive that: the fish shrinks, and most of its triangles (red) are "
-                "turned over half way."
+                "Nose and tail must stay on two curves, drawn anew in each frame, which turn the other way "
+                "round than the local maps do. E^F cannot forgive that: the fish shrinks, and half way most "
+                "of its triangles (red) are turned over. A fish that followed the curves, as under E^R "
+                "(grey, dotted), would cost more still by E^F: right plot."
             ),
             params={"example": "fish", "stage": "frames", "constraint": "loci"},
         ),
@@ -65,9 +69,10 @@ _WHOLE = ("stage", "global", "morph", "frames")
             title="E^F with angles within half a turn",
             equations=("6.2",),
             caption=(
-                "The snake rolls up by more than 540 degrees, but each local angle is taken in (-180, 180]. "
-                "Neighbours whose angles differ by a full turn pull apart, and the snake breaks there: some "
-                "triangles (red) are turned over on the way."
+                "The snake rolls up, by consistent angles from -55 to 532 degrees (grey), but each local "
+                "angle is taken in (-180, 180] (middle plot). Where the angles jump by a full turn, "
+                "neighbours turn opposite ways: the snake kinks and folds over itself, and a few triangles "
+                "(ringed, and for t = 1/2 larger, in red) are turned over."
             ),
             params={"example": "snake", "stage": "frames", "angles": "principal"},
         ),
@@ -75,9 +80,9 @@ _WHOLE = ("stage", "global", "morph", "frames")
             title="E^R with the same constraints as E^F",
             equations=("6.4", "6.5"),
             caption=(
-                "The input of the figure before. E^R takes no account of how each triangle is turned and "
-                "scaled as a whole: the fish follows the curves the other way round, and no triangle is "
-                "turned over."
+                "The input of figure 6.5. E^R takes no account of how each triangle is turned and scaled as "
+                "a whole: the fish follows the curves the other way round, and no triangle is turned over. "
+                "By E^F this way costs more than the one that E^F finds (grey, dotted): right plot."
             ),
             params={"example": "fish", "stage": "frames", "constraint": "loci", "energy": "similarity"},
         ),
@@ -86,8 +91,9 @@ _WHOLE = ("stage", "global", "morph", "frames")
             equations=("6.2", "6.4", "6.5"),
             caption=(
                 "Above, E^F with the angles in (-180, 180], which break the snake. In the middle, E^R with "
-                "the same angles, and one edge of the head held: it rolls up all the same, since E^R does "
-                "not depend on them. Below, E^F does as well with angles that are consistent over the mesh."
+                "the same angles, and one edge of the head (two dots) held: the snake rolls up whole, since "
+                "E^R does not depend on the angles. Below, E^F does as well with angles that are consistent "
+                "over the mesh."
             ),
             params={
                 "example": "snake",
@@ -101,9 +107,11 @@ _WHOLE = ("stage", "global", "morph", "frames")
             title="Distances of points, E^P, beside E^F",
             equations=("6.1", "6.2"),
             caption=(
-                "Under the same constraints, which contradict the local maps: above, E^P sums the distances "
-                "of corners, so that a triangle counts by the square of its area, and small ones are given "
-                "up for large ones: the least determinant falls further below 0 than under E^F, below."
+                "A snake whose triangles are small at the ends, half way from P to Q; nose and tail are led "
+                "closer together than the local maps say. E^P sums distances of corners, so that a triangle "
+                "counts by the square of its area: large ones keep their shape, and the tail's tip (ring) is "
+                "given up. E^F counts by the area itself and spreads the error. The plot has a dot for each "
+                "triangle."
             ),
             params={
                 "example": "swallow",
@@ -118,9 +126,10 @@ _WHOLE = ("stage", "global", "morph", "frames")
             title="Points up to similarity, E^S, beside E^R",
             equations=("6.3", "6.4"),
             caption=(
-                "Both errors forgive each triangle its turn and its size, and both let the cat, led by nose "
-                "and tail, turn backwards without a triangle turned over. E^S measures by the corners, E^R "
-                "by the entries of the maps: the shapes hardly differ, the energies do."
+                "Nose and tail lead the cat backwards round, against its local maps. E^S, which measures by "
+                "the corners but forgives each triangle its turn and its size, lets it follow, and no "
+                "triangle is turned over; E^R gives nearly the same. E^F, below, leaves the body behind, and "
+                "parts of it, above all the tail, are turned over (red)."
             ),
             params={
                 "example": "cat",
@@ -136,7 +145,8 @@ _WHOLE = ("stage", "global", "morph", "frames")
             caption=(
                 "Nose and tail come closer on their curves. E^R (below) lets the whole gecko shrink with "
                 "them; with a share of E^F (above) the triangles keep more of their size, and the area does "
-                "not sink as far."
+                "not sink as far. The price: at the tip of the tail, which its curve pulls at, triangles are "
+                "squeezed more, and the least determinant falls lower for a while."
             ),
             params={
                 "example": "gecko",
@@ -151,10 +161,10 @@ _WHOLE = ("stage", "global", "morph", "frames")
             title="The symmetrised error",
             equations=("6.2",),
             caption=(
-                "In the middle plot, how far the way from the target back to the source passes from the way "
-                "there, over the size of the cat. With E^F alone (below, dashed), weighted by the areas and "
-                "measured by the maps of one direction, the two differ; with the symmetrised error (above) "
-                "they are the same."
+                "The bulge wanders, so that triangles which are large in P are small in Q. The way from the "
+                "target back to the source (purple, dashed) is another than the way there under E^F (right), "
+                "whose weights and maps are those of one direction. Under the symmetrised error (left) the "
+                "two are the same. The plot: the largest distance of a vertex, over the size of P."
             ),
             params={
                 "example": "swallow",
@@ -169,10 +179,11 @@ _WHOLE = ("stage", "global", "morph", "frames")
             title="An edge held, or its direction alone, and the barycentre on a curve",
             equations=("6.2", "6.4"),
             caption=(
-                "Above, the vector between two vertices of the trunk (thick line) turns forwards by a full "
-                "turn more than the local maps say, and E^R lets the whole cat follow. Below, only the "
-                "direction (dashed) is given, n . (v_k - v_l) = 0, and rears up by 40 degrees: the length of "
-                "the edge is free, and a share of E^F, which keeps sizes, lets the cat shrink a little."
+                "The barycentre (dot) follows its curve, on which the frames lie. Above, the vector between "
+                "two vertices of the trunk (arrow) turns backwards, by a full turn other than the local maps "
+                "say, and E^R lets the whole cat follow. Below, only the direction (dashed line) is given, "
+                "n . (v_k - v_l) = 0, and rears up by 40 degrees: the length of the edge is free, and a "
+                "share of E^F, which keeps sizes, lets the cat shrink a little."
             ),
             params={
                 "example": "cat",
@@ -209,9 +220,9 @@ def global_interp(
     beside: Annotated[
         Literal["none", "frobenius", "similarity", "both-angles", "direction"],
         Param(
-            "a second row, by this energy with consistent angles; or E^F with the same angles above, and "
-            "with consistent ones below; or E^R and a share of E^F, barycentre thrown, only the direction of "
-            "an edge given",
+            "a second row or shape, by this energy with consistent angles; or E^F with the same angles above, "
+            "and with consistent ones below; or E^R and a share of E^F, barycentre thrown, only the direction "
+            "of an edge given",
             only=("stage", "global", "frames"),
         ),
     ] = "none",
@@ -266,8 +277,8 @@ def global_interp(
     stitches it together. E^F asks that each triangle be turned just as its local
     map turns it, so that constraints or angles that contradict this make triangles
     shrink and turn over (red, counted); E^R leaves that open and follows. The
-    plots below a strip: the least determinant, below 0 where a triangle is turned
-    over, the area of the whole and the energy over t.
+    plots beside a strip: the least determinant, below 0 where a triangle is turned
+    over, the area of the whole, and one energy, the same for all rows, over t.
     """
     pair = _pairs.pair(example, source, target)
     choice = _morph.Choice(energy, homotopy, angles, constraint, seed, turns, winding, w, weights)
