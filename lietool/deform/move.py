@@ -209,22 +209,61 @@ def solve(prepared: Prepared, pose: Pose) -> Moved:
         parts that have weights of their own, quaternions cancel each other at
         a point, or an exponential overflows.
     """
-    w, way = prepared.weights, pose.way
+    _fits("move.solve", prepared, pose)
+    points, fallback = np.empty_like(prepared.local), _fallback(prepared, pose)
+    _through(prepared, pose.way, pose.params, points, None)
+    if np.any(fallback):
+        _through(prepared, ways.POLAR_QUATERNION, pose.polar, points, np.flatnonzero(fallback))
+    return Moved(points, fallback)
+
+
+def transformations(prepared: Prepared, pose: Pose) -> ways.Blend:
+    """Return the blended transformation of every point, which takes it to where `solve` does.
+
+    Of the centres of a mesh's faces, they are what `stitch.deform` makes one mesh of.
+
+    Book: (7.9), with an origin
+    MEIS: 3.3
+
+    Parameters
+    ----------
+    prepared : Prepared
+    pose : Pose
+
+    Returns
+    -------
+    blend : ways.Blend
+        A (n, 4, 4), and at which points the polar blend stood in (n,).
+
+    Raises
+    ------
+    ValueError
+        As `solve`.
+    """
+    _fits("move.transformations", prepared, pose)
+    fallback, every = _fallback(prepared, pose), slice(None)
+    B = pose.way.decode(_mixed(pose.way, pose.params.T, prepared.weights, every).T)
+    if np.any(fallback):
+        polar = _mixed(ways.POLAR_QUATERNION, pose.polar.T, prepared.weights, np.flatnonzero(fallback))
+        B[fallback] = ways.POLAR_QUATERNION.decode(polar.T)
+    return ways.Blend(about(B, -prepared.centre), fallback)
+
+
+def _fits(where: str, prepared: Prepared, pose: Pose) -> None:
+    """Refuse a pose of other transformations than there are weights for, or without parts to weigh apart."""
+    w = prepared.weights
     if len(pose.params) != w.rotation.shape[1]:
         must = f"of {w.rotation.shape[1]} transformations, as many as there are weights"
-        checks.fail("move.solve", "pose", must, f"{len(pose.params)}", None)
-    if not w.shared and way.parts is None:
+        checks.fail(where, "pose", must, f"{len(pose.params)}", None)
+    if not w.shared and pose.way.parts is None:
         apart = ", ".join(each.name for each in ways.WAYS.values() if each.parts)
         must = f"one for all: only {apart} keep rotation, translation and stretch apart"
-        checks.fail("move.solve", "weights", must, f"three, for {way.name}", None)
-    points = np.empty_like(prepared.local)
-    _through(prepared, way, pose.params, points, None)
-    fallback = np.zeros(len(points), dtype=bool)
-    if not pose.able.all():
-        fallback = np.any(w.rotation[:, ~pose.able] != 0.0, axis=1)
-        if np.any(fallback):
-            _through(prepared, ways.POLAR_QUATERNION, pose.polar, points, np.flatnonzero(fallback))
-    return Moved(points, fallback)
+        checks.fail(where, "weights", must, f"three, for {pose.way.name}", None)
+
+
+def _fallback(prepared: Prepared, pose: Pose) -> Mask:
+    """Where a transformation that has no parameters counts."""
+    return np.any(prepared.weights.rotation[:, ~pose.able] != 0.0, axis=1)
 
 
 def _through(

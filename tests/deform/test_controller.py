@@ -1,5 +1,6 @@
 """Weights from a point in a polygon, and weights for many variations."""
 
+import igl
 import numpy as np
 import pytest
 
@@ -47,6 +48,14 @@ def test_corners_and_edges_are_exact(name):
             expected = np.zeros(k)
             expected[i], expected[(i + 1) % k] = 1 - t, t
             np.testing.assert_allclose(w, expected, atol=1e-6 if name == "small and far" else 1e-9)
+
+
+@pytest.mark.parametrize("name", ["square", "seven", "notched"])
+@pytest.mark.parametrize("spread", [1.0, 3.0])
+def test_they_are_libigls(name, spread):
+    c = POLYGONS[name]
+    p = inside(c, spread=spread)
+    np.testing.assert_allclose(controller.coordinates(c, p), igl.mvc(p, c), atol=1e-12)
 
 
 def test_they_are_continuous_across_edges_and_towards_corners():

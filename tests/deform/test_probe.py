@@ -167,6 +167,19 @@ def test_separate_weights():
             solve(w=same, way=ways.WAYS[name])
 
 
+@EVERY
+@pytest.mark.parametrize("origin", [None, np.zeros(3)], ids=["centre", "world"])
+def test_the_transformation_of_each_point_takes_it_to_where_it_goes(way, origin):
+    apart = weights.separate(W, 0.5 * W, 0.2 * W)
+    for w in (W, apart) if way.parts else (W,):
+        prepared = probe.prepare(V, REST, w, origin)
+        now, _ = probe.pose(prepared, CURRENT, way)
+        found = move.transformations(prepared.anchored, now)
+        goes = (found.A @ np.column_stack([V, np.ones(N)])[..., None])[:, :3, 0]
+        np.testing.assert_allclose(goes, move.solve(prepared.anchored, now).points, atol=1e-13)
+        assert not found.fallback.any()
+
+
 def test_alexa_counts_what_has_no_logarithm():
     rest = np.stack([frame([0.0, 0, 0]), frame([3.0, 0, 0])])
     current = rest.copy()
@@ -179,6 +192,10 @@ def test_alexa_counts_what_has_no_logarithm():
     polar = probe.solve(prepared, current, ways.POLAR_QUATERNION)
     np.testing.assert_array_equal(result.points[result.fallback], polar.points[result.fallback])
     assert not polar.fallback.any()
+    blend = move.transformations(prepared.anchored, probe.pose(prepared, current, ways.ALEXA)[0])
+    np.testing.assert_array_equal(blend.fallback, result.fallback)
+    goes = (blend.A @ np.column_stack([V, np.ones(N)])[..., None])[:, :3, 0]
+    np.testing.assert_allclose(goes, result.points, atol=1e-13)
 
 
 # Whole turns.

@@ -6,7 +6,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import lsqr
 from scipy.spatial.transform import Rotation
 
-from lietool.deform import local_maps, stitch
+from lietool.deform import cage, enclosing, local_maps, move, probe, stitch, ways, weights
 from lietool.lie import affine, so3
 
 
@@ -149,6 +149,39 @@ def test_transformations_that_vary_are_followed():
     U += bend(V)[:, :, 2] * V[:, 2:]
     assert np.max(np.abs(found.vertices - U)) < 0.1
     assert found.flips == 0
+
+
+@pytest.mark.parametrize("way", ways.WAYS.values(), ids=ways.WAYS)
+def test_probes_and_cages_may_give_their_transformations_to_faces(way):
+    """MEIS section 3: with the laws that hold by vertices, and near to what comes of these."""
+    V, F = torus(36, 24)
+    at = stitch.prepare(V, F)
+    c = stitch.centres(at)
+    rest = np.stack([np.eye(4)] * 2)
+    rest[:, 0, 3] = [-3.0, 3.0]
+    w = weights.partition_of_unity(weights.inverse_distance(weights.distances(c, rest[:, :3, 3])))
+    probes = probe.prepare(c, rest, w)
+
+    def by_faces(anchored, pose):
+        return stitch.deform(at, move.transformations(anchored, pose).A)
+
+    A = affine.phi_so([0.5, -1.0, 0.3, 1.0, 2.0, 3.0, 0.1, 0.05, 0.0, -0.2, 0.1, 0.3])
+    found = by_faces(probes.anchored, probe.pose(probes, A @ rest, way)[0])
+    np.testing.assert_allclose(found.vertices, V @ A[:3, :3].T + A[:3, 3], atol=1e-12)
+    hull = enclosing.cage(V, F, faces=60)
+    S, t = 1.3 * so3.exp([0.4, 0.2, -1.0]), np.array([1.0, 0.0, -2.0])
+    caged = cage.prepare(c, hull.vertices, hull.faces)
+    now = cage.pose(caged, hull.vertices @ S.T + t, way)
+    np.testing.assert_allclose(by_faces(caged.anchored, now.encoded).vertices, V @ S.T + t, atol=1e-12)
+    current = rest.copy()
+    current[1, :3, :3] = so3.rotation("x", 1.2)
+    found = by_faces(probes.anchored, probe.pose(probes, current, way)[0])
+    own = weights.partition_of_unity(weights.inverse_distance(weights.distances(V, rest[:, :3, 3])))
+    vertexwise = probe.solve(probe.prepare(V, rest, own), current, way).points
+    # They differ by what the slope of the weights adds to the map of a face.
+    far = np.linalg.norm(vertexwise - V, axis=1).mean()
+    assert far > 0.3
+    assert np.linalg.norm(found.vertices - vertexwise, axis=1).mean() < 0.3 * far
 
 
 def test_a_face_that_is_turned_over_is_counted():
