@@ -1,5 +1,6 @@
 """A mesh with its pins and handles, the weights of these, and where it is when they are on their way."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -7,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lietool.deform import distortion, harmonic, poisson, ways
-from lietool.lie import polar, so3, sym
+from lietool.lie import polar, quaternion, so3, sym
 from lietool.mesh import geodesic
 from lietool.mesh.surface import Mesh
 
@@ -150,20 +151,41 @@ def turned(case: Case, points: Array) -> tuple[Array, Array]:
     """Return by how many degrees a deformed mesh has turned, where the first handle's weight has some values.
 
     Measured at the points alone: the rotations that are nearest to what happened to the vertices between
-    two values of the harmonic weight, followed from the pins to the handle.
+    two values of the harmonic weight.  What counts is their part about the handle's own axis, which is
+    followed without jumps from the pins to the handle.
     """
     V = case.mesh.vertices
-    at = np.clip(case.weights("harmonic")[:, 0], 0.0, 1.0)
-    place = np.minimum((at * _PLACES).astype(np.intp), _PLACES - 1)
+    place = _places(case.weights("harmonic")[:, 0])
     place[case.pins], place[case.handles[0]] = -1, _PLACES
-    rings = [ring for k in range(_PLACES + 1) if len(ring := np.flatnonzero(place == k)) >= _FEWEST]
-    rings = rings or [np.arange(len(V))]
-    R = np.stack([_nearest(V[ring], points[ring]) for ring in rings])
-    x = so3.log_along(R, np.zeros(3), check=False)
-    return np.array([at[ring].mean() for ring in rings]), np.degrees(np.linalg.norm(x, axis=1))
+    found, M = [], []
+    for k in range(_PLACES + 1):
+        ring = np.flatnonzero(place == k)
+        if len(ring) >= _FEWEST:
+            P, Q = V[ring], points[ring]
+            M.append((Q - Q.mean(axis=0)).T @ (P - P.mean(axis=0)))
+            found.append(k)
+    return _followed(case, found, M)
 
 
-def _nearest(P: Array, Q: Array) -> Array:
-    """The rotation that takes points P (n, 3) nearest to Q, but for a translation."""
-    U, _, Vt = np.linalg.svd((Q - Q.mean(axis=0)).T @ (P - P.mean(axis=0)))
-    return (U * (1.0, 1.0, np.linalg.det(U @ Vt))) @ Vt
+def guided(case: Case, result: poisson.Result) -> tuple[Array, Array]:
+    """Return the same of what the faces were to do: of meshes that may be crumpled in any way."""
+    w = result.prepared.weights[:, 0]
+    place = np.where(w >= 1.0 - 1e-12, _PLACES, _places(w))
+    found = [k for k in range(_PLACES + 1) if np.any(place == k)]
+    return _followed(case, found, [result.guide[place == k].sum(axis=0) for k in found])
+
+
+def _places(w: Array) -> Index:
+    return np.minimum((np.clip(w, 0.0, 1.0) * _PLACES).astype(np.intp), _PLACES - 1)
+
+
+def _followed(case: Case, places: Sequence[int], M: Sequence[Array]) -> tuple[Array, Array]:
+    """The weights of places, and the turns there of the rotations nearest to matrices."""
+    U, _, Vt = np.linalg.svd(np.reshape([np.eye(3), *M], (-1, 3, 3)))
+    U[..., 2] *= np.linalg.det(U @ Vt)[:, None]
+    q = quaternion.from_matrix(U @ Vt, check=False)
+    axis = case.motions.x[0]
+    size = float(np.linalg.norm(axis))
+    angle = np.unwrap(2.0 * np.arctan2(q[:, 1:] @ (axis / size), q[:, 0])) if size > 0.0 else np.zeros(len(q))
+    at = np.where(np.equal(places, _PLACES), 1.0, (np.array(places, float) + 0.5) / _PLACES)
+    return np.append(0.0, at), np.degrees(angle)

@@ -17,9 +17,9 @@ from ._probe_look import Look, Patches, patches
 Array = NDArray[np.float64]
 
 # Of each arm that stands on the ground, what is pinned; of the head, what is the handle, by its height.
-_TIP, _CROWN = 0.93, 1.25
+_TIP, _CROWN = 0.82, 1.25
 # How the head is moved: turned about an axis, in degrees, drawn and stretched upwards.
-_AXIS, _DEGREES, _DRAWN, _STRETCH = (0.9, 0.3, 0.3), 30.0, (0.10, -0.20, 1.20), (1.0, 1.0, 1.3)
+_AXIS, _DEGREES, _DRAWN, _STRETCH = (0.9, 0.3, 0.3), 30.0, (0.10, -0.20, 1.00), (1.0, 1.0, 1.3)
 # Of the arm that is turned: from where it is free, and from where it is the handle; and how much of the arm's
 # direction the axis has that it is rolled up about, so that it does not run into itself.
 _ROOT, _HELD, _ASIDE = 0.24, 0.90, 0.22
@@ -41,7 +41,7 @@ def by_head() -> Case:
         np.diag(np.log(_STRETCH))[None],
         np.array([_DRAWN]),
     )
-    look = Look((1.0, 0.35, 0.30), 0.62, patches=Patches((s.faces,)), eyes=_eyes(s), eye=s.eye)
+    look = Look((1.0, 0.35, 0.30), 0.55, patches=Patches((s.faces,)), eyes=_eyes(s), eye=s.eye)
     mesh = Mesh(s.vertices, s.faces)
     return Case("head", mesh, look, pins, ("head",), (crown,), motions, kept=_KEPT["head"])
 
@@ -96,4 +96,4 @@ def _arm_look() -> Look:
     colors = (style.MARK, style.BETWEEN, style.AFTER, style.BEFORE)
     made = patches(s.faces, [held, stripes, free])
     edges = (style.BEFORE_EDGE, style.BEFORE_EDGE)
-    return Look((1.0, 0.35, 0.30), 0.6, colors, colors, made, edges, _eyes(s), s.eye)
+    return Look((1.0, 0.35, 0.30), 0.40, colors, colors, made, edges, _eyes(s), s.eye)

@@ -12,7 +12,7 @@ from ._poisson_case import Case, Motions
 from ._probe_look import Look
 
 # The frames of handles, over half the diagonal of the mesh's box.
-_FRAME = 0.4
+_FRAME = 0.28
 
 
 def case(mesh: Path | None, handles: Path | None, paint: Path | None) -> Case | None:
@@ -34,7 +34,8 @@ def case(mesh: Path | None, handles: Path | None, paint: Path | None) -> Case | 
     if len(loose):
         # No equation says where they are to go.
         pins = np.concatenate([pins, loose])
-        notes.append(f"{len(loose)} vertices that no face uses stay where they are")
+        many = f"{len(loose)} vertices that no face uses stay where they are"
+        notes.append(many if len(loose) > 1 else "1 vertex that no face uses stays where it is")
     motions = Motions.of(found.centres, found.A, found.turns)
     size = 0.5 * float(np.linalg.norm(np.ptp(shape.vertices, axis=0)))
     look = Look((1.0, 0.5, 0.35), _FRAME * size, (style.BEFORE,), (style.AFTER,))

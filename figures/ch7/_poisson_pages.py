@@ -14,20 +14,30 @@ from lietool.render.camera import Box, Camera
 from lietool.render.plot import Axes, number
 from lietool.render.scene import Label, Picture, Record, View
 
-from ._poisson_case import WAYS, Case, Measured, turned
+from ._poisson_case import WAYS, Case, Measured, guided, turned
 from ._probe_pages import WORDS
 
 Array = NDArray[np.float64]
 
 # Arcs of turns by less, degrees, are not drawn.
 _LEAST = 0.5
+# Of others the radius, in lengths of the handles' axes.
+_ARC = 1.2
 _COLORS = ((style.ROUTE_2, style.ROUTE_2_TEXT, (12.0, 7.0)), (style.ROUTE_1, style.ROUTE_1_TEXT, None))
 
 
 def _camera(case: Case, shapes: Sequence[Array], box: Box, margin: float = 1.06) -> Camera:
     look = case.look
-    upright = [look.upright(V) for V in (case.mesh.vertices, *shapes)]
+    upright = [look.upright(V) for V in (case.mesh.vertices, *shapes, _tips(case))]
     return mesh_page.together(upright, look.direction, box, margin)
+
+
+def _tips(case: Case) -> Array:
+    """The ends of the handles' axes, at rest and moved."""
+    own = case.motions.centres[:, None] + case.look.probe * np.eye(3)
+    A, _ = case.motions.at(1.0)
+    moved = (A[:, None, :3, :3] @ own[..., None])[..., 0] + A[:, None, :3, 3]
+    return np.concatenate([own, moved]).reshape(-1, 3) if case.name == "own" else case.motions.centres
 
 
 def _ground(case: Case, points: Array) -> float:
@@ -69,7 +79,7 @@ def _handles(case: Case, t: float, camera: Camera, arcs: bool) -> list[Record]:
     for frame, x in zip(look.upright(A @ frames), t * case.motions.x, strict=True):
         records += mesh_look.probe(frame, look.probe, moved=True)
         if arcs and np.degrees(np.linalg.norm(x)) > _LEAST:
-            records += mesh_look.turn(frame[:3, 3], x @ up, 0.62 * look.probe, camera)
+            records += mesh_look.turn(frame[:3, 3], x @ up, _ARC * look.probe, camera)
     return mesh_look.inside(records, 0.95)
 
 
@@ -109,9 +119,9 @@ def handles(case: Case, kind: str, way: str, t: float) -> Drawing:
 
 def _legend(case: Case) -> list[Record]:
     word = "of the handle" if len(case.names) == 1 else "of the handles"
-    records = mesh_page.color_bar((330.0, 62.0, 240.0, 18.0), title=f"weight {word}")
+    records = mesh_page.color_bar((468.0, 62.0, 240.0, 18.0), title=f"weight {word}")
     if len(case.pins):
-        at = np.array([[760.0, 71.0, 0.0]])
+        at = np.array([[830.0, 71.0, 0.0]])
         records += mesh_look.cloud(at, style.MARK, 8.0)
         records.append(Label("pinned", at[0], style.INK, style.SMALL_TEXT, (20.0, 0.0), "lc", halo=False))
     return records
@@ -141,7 +151,8 @@ class _Method:
     @classmethod
     def of(cls, case: Case, kind: str, way: str, t: float) -> "_Method":
         result = case.solve(kind, WAYS[way], t)
-        return cls(case, kind, way, result, Measured.of(case, result), *turned(case, result.vertices))
+        along = guided(case, result) if case.name == "own" else turned(case, result.vertices)
+        return cls(case, kind, way, result, Measured.of(case, result), *along)
 
     @property
     def numbers(self) -> dict[str, object]:
@@ -193,20 +204,26 @@ def _asked(case: Case, t: float, camera: Camera) -> list[Record]:
     records = _handles(case, 0.0, camera, False)
     for centre, x in zip(look.upright(case.motions.centres), t * case.motions.x, strict=True):
         if np.degrees(np.linalg.norm(x)) > _LEAST:
-            records += mesh_look.turn(centre, x @ up, 0.62 * look.probe, camera)
+            records += mesh_look.turn(centre, x @ up, _ARC * look.probe, camera)
     return records
 
 
 def _plot(found: Sequence[_Method]) -> list[Record]:
     """How far each has turned, over the weight of the handle."""
     most = max(1.12 * max(float(m.degrees.max()) for m in found), 10.0)
+    # Beyond half a turn quaternions go the shorter way round, which is back.
+    least = min(1.12 * min(float(m.degrees.min()) for m in found), 0.0)
+    least = 0.0 if least > -0.02 * most else least
     step = next((s for s in (30.0, 90.0, 180.0, 360.0) if most <= 3.5 * s), 720.0)
-    axes = Axes((732.0, 546.0, 380.0, 236.0), (0.0, 1.0), (0.0, most))
-    ticks = [(y, rf"${number(y, 0)}^{{\circ}}$") for y in np.arange(0.0, most, step)]
+    axes = Axes((732.0, 546.0, 380.0, 236.0), (0.0, 1.0), (least, most))
+    ticks = [
+        (y, rf"${number(y, 0)}^{{\circ}}$") for y in step * np.arange(np.ceil(least / step), most / step)
+    ]
     records = axes.frame([(0.0, "$0$ (pins)"), (1.0, "$1$ (handle)")], ticks)
     middle = axes.box[0] + 0.5 * axes.box[2]
+    title = "turned, of the guidance" if found[0].case.name == "own" else "turned, measured"
     records += [
-        Label("turned, measured", (middle, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn"),
+        Label(title, (middle, 846.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn"),
         Label(
             "weight", (middle, axes.box[1], 0.0), style.INK, style.SMALL_TEXT, (0.0, -14.0), "ct", halo=False
         ),
@@ -226,7 +243,7 @@ METHODS = (
 )
 """The rows of table 7.1: weights, way of blending, and both in words."""
 
-_LINES = ("turned by", "mean stretch", "5 % above", "turned over")
+_LINES = ("mean stretch", "5 % above", "turned over")
 # Where the columns begin, their pitch and width; the rows' upper end and the part of the page that they take.
 _COLUMNS, _PITCH, _WIDE, _TOP, _ROWS = 212.0, 326.0, 316.0, 790.0, 722.0
 _LINE, _TALL = 34.0, 240.0
@@ -235,7 +252,7 @@ _LINE, _TALL = 34.0, 240.0
 def table(cases: Sequence[Case], asked: Sequence[float | None], t: float) -> Drawing:
     """The three methods, each on the same edits: one row of pictures for each, and what is measured."""
     pitch = _ROWS / len(cases)
-    tall = min(pitch - _LINE * len(_LINES) - 14.0, 440.0)
+    tall = min(pitch - _LINE * (1 + len(_LINES)) - 14.0, 440.0)
     boxes = [
         [(_COLUMNS + k * _PITCH, _TOP - i * pitch - tall, _WIDE, tall) for k in range(3)]
         for i in range(len(cases))
@@ -248,7 +265,7 @@ def table(cases: Sequence[Case], asked: Sequence[float | None], t: float) -> Dra
     for row, places, degrees in zip(rows, boxes, asked, strict=True):
         for m, box in zip(row, places, strict=True):
             views.append(View(tuple(_body(m.case, m.result.vertices, camera, 1.0)), camera, box))
-            words += _column(m, box)
+            words += _column(m, box, -1.0 if (degrees or 0.0) < 0.0 else 1.0)
         words += _names(places[0], degrees, t)
     for box, (_, _, name) in zip(boxes[0], METHODS, strict=True):
         for k, line in enumerate(name):
@@ -277,7 +294,8 @@ def _names(box: Box, degrees: float | None, t: float) -> list[Record]:
     for k, line in enumerate(shown):
         at = (right, middle + 20.0 - 40.0 * k, 0.0)
         records.append(Label(line, at, style.INK, style.TEXT, anchor="rn"))
-    for k, line in enumerate(_LINES):
+    # Without a turn of ours it is a user's mesh, of which only the guidance is followed.
+    for k, line in enumerate(("guidance" if degrees is None else "turned by", *_LINES)):
         at = (right, box[1] - _LINE * (k + 1), 0.0)
         records.append(Label(line, at, style.MUTED, style.SMALL_TEXT, anchor="rn", halo=False))
     return records
@@ -288,10 +306,10 @@ def _tone(m: _Method) -> str:
     return style.WRONG if m.measured.flipped else style.INK
 
 
-def _column(m: _Method, box: Box) -> list[Record]:
-    """What is measured, below a picture."""
+def _column(m: _Method, box: Box, sign: float) -> list[Record]:
+    """What is measured, below a picture; turns with a sign."""
     lines = (
-        rf"${number(m.degrees[-1], 0)}^{{\circ}}$",
+        rf"${number(sign * m.degrees[-1], 0)}^{{\circ}}$",
         f"{m.measured.mean:.2f}",
         f"{m.measured.most_of:.2f}",
         f"{m.measured.flipped or 'none'}",
