@@ -28,6 +28,8 @@ _LOUPES_BACK = ((718.0, 206.0), (1002.0, 206.0))
 # Which part of the errors is large, and how much of the size of a shape is seen larger.
 _WORST, _PART = 0.88, 0.085
 _BAR = (1056.0, 110.0, 26.0, 190.0)
+# Errors that are 0 but for rounding.
+_NOISE = 1e-9
 # Of triangles, in the plot.
 _DOTS = (4.4, 3.2)
 
@@ -206,7 +208,8 @@ def _ghosts(place: Plane, pair: Shape) -> list[scene.Record]:
 
 def _most(error: list[Array]) -> float:
     """The error that has the strongest colour: hardly any triangle of the better way has more."""
-    return max(min(float(np.quantile(e, 0.97)) for e in error), 1e-9)
+    most = min(float(np.quantile(e, 0.97)) for e in error)
+    return most if most > _NOISE else 1.0
 
 
 def _plot(strips: Sequence[Strip], error: list[Array], most: float) -> list[scene.Record]:
@@ -214,8 +217,9 @@ def _plot(strips: Sequence[Strip], error: list[Array], most: float) -> list[scen
     pair = strips[0].way.pair
     area = topology.areas(pair.source, pair.faces)
     x = np.log10(area / area.mean())
-    y = [np.log10(np.maximum(e, 1e-9 * most)) for e in error]
-    low = float(np.floor(min(np.quantile(v, 0.005) for v in y)))
+    y = [np.log10(np.maximum(e, _NOISE)) for e in error]
+    some = max(float(e.max()) for e in error) > _NOISE
+    low = float(np.floor(min(np.quantile(v, 0.005) for v in y))) if some else -2.0
     high = max(float(np.ceil(max(v.max() for v in y))), low + 1.0)
     # Powers of ten need not begin with a whole one.
     left, right = float(x.min()) - 0.05, float(x.max()) + 0.05
@@ -231,13 +235,18 @@ def _plot(strips: Sequence[Strip], error: list[Array], most: float) -> list[scen
     records.append(
         scene.Label("area / mean area", name, style.INK, style.SMALL_TEXT, anchor="cn", halo=False)
     )
+    large = np.argsort(x)[-12:]
+    heights = [float(axes.at(right, max(np.median(v[large]), low))[1]) for v in y]
+    # Named beside the largest triangles, but not over each other.
+    apart = 34.0 - abs(heights[0] - heights[1])
+    up = heights[0] >= heights[1]
     for k in (1, 0):
         tone, type_, _ = _morph_plots.COLORS[k]
         keep = y[k] >= low
-        records.append(scene.Points(axes.at(x[keep], y[k][keep]), tone, _DOTS[k], shaded=False))
-        # Named beside its largest triangles.
-        large = np.argsort(x)[-12:]
-        end = axes.at(right, float(np.median(y[k][large])))
+        if keep.any():
+            records.append(scene.Points(axes.at(x[keep], y[k][keep]), tone, _DOTS[k], shaded=False))
+        moved = 0.5 * max(apart, 0.0) * (1.0 if (k == 0) == up else -1.0)
+        end = (_PLOT[0] + _PLOT[2], heights[k] + moved, 0.0)
         name = strips[k].name[0]
         records.append(scene.Label(name, end, type_, style.SMALL_TEXT, (16.0, 0.0), "lc", halo=False))
     return records
@@ -261,7 +270,7 @@ def _bar(most: float) -> list[scene.Record]:
     at = np.array([(*c, 0.0) for c in corners])
     color = style.ramp([0.0, 0.0, 0.5, 0.5, 1.0, 1.0], TONES)
     faces = [[0, 1, 2], [0, 2, 3], [3, 2, 4], [3, 4, 5]]
-    said = [("$0$", low), (rf"${most:.2g}$", low + tall)]
+    said = [("$0$", low), (f"${most:.2g}$" if 0.01 <= most < 100.0 else _morph_plots.power(most), low + tall)]
     return [
         scene.Surface(at, faces, color, material="flat"),
         scene.Lines(at[[0, 1, 4, 5, 0]], style.INK, style.THIN),

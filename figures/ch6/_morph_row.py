@@ -208,7 +208,7 @@ def held(at: Plane, way: _morph.Way, V: Array, t: float) -> list[scene.Record]:
     dots = [V[v] for v, _ in way.led.loci]
     if way.led.line is not None:
         ends, along = V[list(way.led.line.ends)], way.led.line.along(t)
-        reach = _REACH * float(np.ptp(way.pair.source, axis=0).max())
+        reach = _REACH * float(np.ptp(V, axis=0).max())
         line = ends.mean(axis=0) + np.multiply.outer([-reach, reach], along)
         records.append(at.line(line, style.ROUTE_1, style.EDGE, dash=(9.0, 7.0)))
         records.append(scene.Points(at.at(ends), style.ROUTE_1, 4.5, shaded=False))

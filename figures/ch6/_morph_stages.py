@@ -53,6 +53,8 @@ def tips(pair: Shape) -> Array:
             break
     rim = np.roll(pair.boundary, -int(np.argmax(pair.boundary == pair.marks["nose"])))
     along, count = far[rim], len(rim)
+    if count <= _NAMED:
+        return rim
     near = max(3, count // 25)
     around = np.stack([np.roll(along, k) for k in range(-near, near + 1)])
     juts = np.flatnonzero(along >= around.max(axis=0))
@@ -156,7 +158,7 @@ def torn(
     """
     drawn = marks.scattered(places.between, pair, corners, marks.color_at(t))
     drawn += _neighbours(pair, corners, half, places, t, reached)
-    said = f"corners of one vertex lie up to {gap:.2g} edge lengths from their mean"
+    said = f"corners of one vertex lie up to {gap:.1f} edge lengths from their mean"
     return _between(pair, places, drawn, rf"local: $A_i(t)$, $t = {t:.2f}$", said)
 
 
@@ -172,9 +174,9 @@ def _neighbours(
     pair_of, edges = shared(pair, corners, half, toward)
     both = corners[pair_of].reshape(-1, 2)
     middle, reach = marks.middle(both)
-    if radius < 60.0 or reach < 1e-9:
+    larger = 0.84 * radius / max(reach, 1e-9)
+    if radius < 60.0 or larger < 1.5 * places.between.scale:
         return []
-    larger = 0.84 * radius / reach
     loupe = Plane((center[0] - larger * middle[0], center[1] - larger * middle[1]), larger)
     records: list[scene.Record] = []
     there, around = places.between.at(middle)[:2], reach * places.between.scale + 6.0

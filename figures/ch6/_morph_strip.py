@@ -11,13 +11,15 @@ from ._morph_row import LEFT, RIGHT, Row, Strip, count, frame, loupe, moment, pl
 
 Array = np.ndarray
 
-_FILLED = 0.95
+_FILLED, _WHITE = 0.95, 26.0
 _TITLE = 846.0
 # Lines of text, the room that a title takes, what axes need below and above, and their height.
 _LINE, _UNDER_TITLE, _AXES_BELOW, _AXES_ABOVE = 38.0, 32.0, 62.0, 66.0
 _LOWEST, _HIGHEST = 116.0, 200.0
 # A line that names the curves of plots; the sample of a line, and how far text is from it.
 _LEGEND, _SAMPLE, _BESIDE = 42.0, 62.0, 16.0
+# Energies with long names.
+_LONG = ("balanced", "symmetric")
 # From the last line of a row to the title of the next.
 _NEXT = 52.0
 # Of three rows: where their frames end and their plots begin, and the plots' height.
@@ -87,7 +89,9 @@ def _enlarged(
 
 def _staggered(pitch: float, wide: float, tall: float, free: float) -> tuple[float, float]:
     """The largest scale of round frames, each other one lower, and by how much it is."""
-    scales = np.linspace(0.4, 1.0, 241) * 2.0 * pitch * _FILLED / wide
+    # At the sides, some white is left.
+    most = min(2.0 * pitch * _FILLED, 2.0 * LEFT + pitch - 2.0 * _WHITE)
+    scales = np.linspace(0.4, 1.0, 241) * most / wide
     drops = free - scales * tall
     # Ellipses that fill the windows do not meet.
     apart = (pitch / (scales * wide)) ** 2 + (np.maximum(drops, 0.0) / (scales * tall)) ** 2
@@ -115,7 +119,10 @@ def _legend(strip: Strip, other: _morph.Way) -> list[scene.Record]:
     records: list[scene.Record] = []
     said = (f"{strip.name[0]}, drawn above", f"{_morph.NAMES[other.choice.energy]} with the same constraints")
     for x, name, colors in zip(
-        (215.0, 610.0), said, (_morph_plots.COLORS[0], _morph_plots.OTHER), strict=True
+        ((90.0, 640.0) if strip.way.choice.energy in _LONG else (215.0, 610.0)),
+        said,
+        (_morph_plots.COLORS[0], _morph_plots.OTHER),
+        strict=True,
     ):
         records.append(_sample(y, x, colors))
         records.append(text(name, x + _SAMPLE + _BESIDE, y, colors[1], "ln"))

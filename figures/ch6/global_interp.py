@@ -220,9 +220,9 @@ def global_interp(
     beside: Annotated[
         Literal["none", "frobenius", "similarity", "both-angles", "direction"],
         Param(
-            "a second row or shape, by this energy with consistent angles; or E^F with the same angles above, "
-            "and with consistent ones below; or E^R and a share of E^F, barycentre thrown, only the direction "
-            "of an edge given",
+            "a second row or shape, by this energy with consistent angles; or E^F with the same angles "
+            "above, and with consistent ones below; or E^R and a share of E^F, barycentre thrown, only the "
+            "direction of an edge given",
             only=("stage", "global", "frames"),
         ),
     ] = "none",
