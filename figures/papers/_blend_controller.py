@@ -24,7 +24,7 @@ _SMALL = 190.0
 _OUT = 1.76
 _MARK = 13.0
 _KEPT = 8
-_ABOVE: Box = (36.0, 340.0, 1128.0, 490.0)
+_ABOVE: Box = (36.0, 340.0, 1088.0, 490.0)
 
 
 def polygon(family: Family) -> controller.Controller:

@@ -107,7 +107,7 @@ class Family:
 def family(
     example: str, thorn: Thorn, spacing: float, rest: Path | None, targets: tuple[Path, ...], up: str
 ) -> Family:
-    """Return the shapes of the files where they are given, else those of the example with such triangles.
+    """Return the shapes of the files where they are given, else those of the example, its triangles so large.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def family(
         If only one kind of file is given, or a file is of no use; it names the file.
     """
     if rest is None and not targets:
-        return _EXAMPLES[example](thorn, spacing)
+        return _EXAMPLES[example](thorn, spacing, up)
     if rest is None or not targets:
         got = "no target" if rest is not None else "no rest"
         raise ValueError(f"rest and targets must be given together; got {got}. Name the other files too")
@@ -126,13 +126,13 @@ def family(
     return _read(files, tuple(_stamp(file) for file in files), up)
 
 
-def _thorn(thorn: Thorn, spacing: float) -> Family:
-    return _thorned(thorn.angle, thorn.shear, thorn.stretch, thorn.stated, spacing)
+def _thorn(thorn: Thorn, spacing: float, up: str) -> Family:
+    return _thorned(thorn.angle, thorn.shear, thorn.stretch, thorn.stated, spacing, up)
 
 
 @lru_cache(KEPT)
 def _thorned(
-    angle: float, shear: float, stretch: tuple[float, float, float], stated: bool, spacing: float
+    angle: float, shear: float, stretch: tuple[float, float, float], stated: bool, spacing: float, up: str
 ) -> Family:
     ball = solids.thorn_ball(spacing)
     own = np.radians(angle), shear, stretch
@@ -147,6 +147,7 @@ def _thorned(
         np.arange(len(ball.vertices)),
         (1.0, 0.2, 0.25),
         ground=False,
+        up=up,
         pins=(int(np.argmin(ball.vertices[:, 2])),),
         solid=ball,
         cut=stripes,
@@ -155,7 +156,7 @@ def _thorned(
 
 
 @lru_cache(KEPT)
-def _animals(spacing: float) -> Family:
+def _animals(spacing: float, up: str) -> Family:
     beast, names = solids.animals(spacing), ("tall", "fat", "long")
     return Family(
         names,
@@ -165,13 +166,14 @@ def _animals(spacing: float) -> Family:
         surface.Mesh(beast.vertices, beast.faces),
         np.arange(len(beast.vertices)),
         (1.0, -1.2, 0.35),
+        up=up,
         solid=beast,
     )
 
 
-_EXAMPLES: Mapping[str, Callable[[Thorn, float], Family]] = {
+_EXAMPLES: Mapping[str, Callable[[Thorn, float, str], Family]] = {
     "thorn": _thorn,
-    "animals": lambda _, spacing: _animals(spacing),
+    "animals": lambda _, spacing, up: _animals(spacing, up),
 }
 
 

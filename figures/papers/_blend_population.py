@@ -46,7 +46,7 @@ def drawing(family: Family, way: str, count: int, seed: int, concentration: floa
         middle = x + width - 30.0, y + 34.0
         glyphs += look.glyph([w], middle, min(_GLYPH, 0.12 * width), rest=False, dot=6.0)
     said = "" if grown == 1.0 else rf", here times ${grown:.2f}$"
-    legend = look.line(f"red: the weights of the shape beside it{said}", 600.0, 28.0)
+    legend = look.line(f"ball in the triangle: the weights of the shape beside it{said}", 600.0, 28.0)
     numbers = {
         "weights": grown * own,
         "bounds": np.stack([look.bounds(one.vertices) for one in made]),

@@ -55,7 +55,7 @@ def drawing(family: Family, way: str, weights: Array) -> Drawing:
     shapes = [family.rest, *family.targets[: many - 1]]
     upright = [family.upright(X) for X in shapes]
     if _has_tip(family):
-        upright.append(np.array([[0.0, 0.0, _UPPER + _PLUMB]]))
+        upright.append(family.upright(np.array([[0.0, 0.0, _UPPER + _PLUMB]])))
     narrow = min(above[0][2], below[0][2])
     camera = mesh_page.together(upright, family.direction, (0.0, 0.0, narrow, _ABOVE[3]), 1.06)
     colours = [look.REST, *map(look.target, range(many - 1))]
@@ -177,8 +177,7 @@ def _views(family: Family, one: Shown, camera: Camera, box: Box) -> list[View]:
 
 def _leaning(family: Family, X: Array) -> list[Record]:
     """The vertical through the thorn, its axis, and the angle between them."""
-    base, along = axis(family, X)
-    up = np.array([0.0, 0.0, 1.0])
+    base, along, up = family.upright(np.stack([*axis(family, X), np.array([0.0, 0.0, 1.0])]))
     angle = np.radians(lean(family, X))
     records: list[Record] = [
         Lines(np.stack([base, base + _PLUMB * up]), style.INK, style.THIN, dash=(9.0, 6.0))

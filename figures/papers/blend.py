@@ -125,7 +125,7 @@ def blend(
             "of their weights: below 1 near to single shapes", low=0.1, high=10.0, only=("view", "population")
         ),
     ] = 0.7,
-    up: Annotated[Literal["y", "z"], Param("which axis of your files is up")] = "y",
+    up: Annotated[Literal["z", "y"], Param("which axis of the shapes is drawn upwards")] = "z",
     rest: Annotated[Path | None, Param("your own shape at rest, a mesh", positional=1)] = None,
     targets: Annotated[
         tuple[Path, ...], Param("what it becomes: meshes of the same faces", positional=2)

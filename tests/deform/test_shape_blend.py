@@ -215,6 +215,21 @@ def test_a_twist_of_540_degrees_is_reported_and_cannot_be_found():
     )
 
 
+def test_maps_that_are_known_are_taken():
+    V, F = tube()
+    # Across the faces it does something else than their normals tell.
+    A = generic.exp(np.array([[0.1, 0.4, -0.2], [0.0, 0.3, 0.1], [0.2, -0.3, 0.2]]))
+    known = np.broadcast_to(A, (1, len(F), 3, 3))
+    at = shape_blend.prepare(V, [V @ A.T], F, ways.ALEXA, maps=known)
+    assert at.maps == pytest.approx(known)
+    # So the blend is that of A itself, which is not to be had from faces and normals.
+    half = shape_blend.solve(at, [0.5])
+    assert half.energy == pytest.approx(0.0, abs=1e-20)
+    assert half.maps == pytest.approx(np.broadcast_to(generic.exp(0.5 * generic.log(A)), half.maps.shape))
+    told = shape_blend.solve(shape_blend.prepare(V, [V @ A.T], F, ways.ALEXA), [0.5])
+    assert told.energy > 1e-6
+
+
 def test_stated_turns_of_a_separate_part_are_kept():
     V, F = tube()
     two = np.concatenate([V, np.add(V, (5, 0, 0))])
@@ -348,6 +363,10 @@ def only(V, F, **more):
         (lambda V, F: shape_blend.prepare(V, [], F), "targets must be at least one mesh; got none"),
         (lambda V, F: shape_blend.prepare(V, [V[:, :2]], F), r"target 0 must be an array of shape \(k, 3\)"),
         (lambda V, F: shape_blend.prepare(V, ["abc"], F), "target 0 must be an array of numbers"),
+        (
+            lambda V, F: only(V, F, maps=np.eye(3)),
+            r"maps must be one for each of 1 targets and .* faces; got",
+        ),
         (lambda V, F: only(V, F + 1), "F must be indices of the 240 vertices"),
         (lambda V, F: only(V, F, way="phi_so"), "way must be one of ways.WAYS; got 'phi_so'"),
         (lambda V, F: only(V, F, stated={1: {0: [0, 0, 1]}}), "stated must be for targets 0 to 0; got 1"),
