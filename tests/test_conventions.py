@@ -11,6 +11,7 @@ from types import FunctionType
 import numpy as np
 import pytest
 
+import lietool.deform
 import lietool.interp
 import lietool.lie
 import lietool.mesh
@@ -59,7 +60,7 @@ FUNCTIONS += [
 # Functions on whole meshes: no batches, but what they say of their arguments is as true.
 OF_MESHES = [
     pytest.param(f, id=f"{module.name}.{f.__name__}")
-    for package in (lietool.interp, lietool.mesh)
+    for package in (lietool.interp, lietool.mesh, lietool.deform)
     for module in pkgutil.iter_modules(package.__path__)
     for f in public(importlib.import_module(f"{package.__name__}.{module.name}"))
 ]

@@ -244,6 +244,17 @@ def solve(
 def moved(prepared: Prepared, pose: Pose) -> Result:
     """Move the points by a pose that is known, as those of `follow`.
 
+    Kaji-Ochiai: (9)
+
+    Parameters
+    ----------
+    prepared : Prepared
+    pose : Pose
+
+    Returns
+    -------
+    result : Result
+
     Raises
     ------
     ValueError

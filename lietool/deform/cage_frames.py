@@ -140,7 +140,17 @@ def corners(F: ArrayLike) -> Elements:
 
 
 def centres(elements: Elements, V: Array) -> Array:
-    """Return the middles of the elements: of a face, an edge, or the vertex; (p, 3)."""
+    """Return the middles of the elements: of a face, an edge, or the vertex.
+
+    Parameters
+    ----------
+    elements : Elements
+    V : ndarray, shape (k, 3)
+
+    Returns
+    -------
+    centres : (p, 3)
+    """
     return V[elements.points].mean(axis=1)
 
 

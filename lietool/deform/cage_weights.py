@@ -36,7 +36,21 @@ _PAIRS = 400_000
 
 
 def inverse_cube(distances: Array) -> Array:
-    """Return 1 / r^3, the influence unless another is given."""
+    """Return 1 / r^3, the influence unless another is given.
+
+    Parameters
+    ----------
+    distances : ndarray, shape (n, p)
+
+    Returns
+    -------
+    w : (n, p)
+
+    Raises
+    ------
+    ValueError
+        As `weights.inverse_distance`.
+    """
     return weights_of.inverse_distance(distances, POWER)
 
 

@@ -193,7 +193,7 @@ def flipped_against(rest: ArrayLike, F: ArrayLike, deformed: ArrayLike, guide: A
     """
     where = "distortion.flipped_against"
     V, F, U = _pair(where, rest, F, deformed)
-    G = np.asarray(guide, float)
+    G = checks.array(where, "guide", guide, (3, 3), check=False)
     if G.shape != (len(F), 3, 3) or not np.isfinite(G).all():
         topology.fail(where, "guide", f"finite, of shape ({len(F)}, 3, 3)", f"shape {G.shape} or nan")
     one, two = (np.einsum("mij,mj->mi", G, V[F[:, k]] - V[F[:, 0]]) for k in (1, 2))

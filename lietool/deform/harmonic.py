@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lietool.lie import checks
 from lietool.mesh import laplacian, solve, topology
 
 Array = NDArray[np.float64]
@@ -110,13 +111,22 @@ def extend(prepared: Prepared, values: ArrayLike) -> Array:
     ValueError
         If there are more or fewer values, or one is not finite.
     """
-    values = np.asarray(values, float)
+    values = checks.array("harmonic.extend", "values", values, (), check=False)
     wide = values.shape[1] if values.ndim == 2 else 1
     return prepared.factor.solve(np.zeros((prepared.factor.count, wide)), values)
 
 
 def weights(prepared: Prepared) -> Array:
-    """Return the weights (n, k) of the handles; they sum to 1."""
+    """Return the weights of the handles; they sum to 1.
+
+    Parameters
+    ----------
+    prepared : Prepared
+
+    Returns
+    -------
+    weights : ndarray, shape (n, k)
+    """
     return extend(prepared, np.eye(int(prepared.handle.max()) + 1)[prepared.handle])
 
 

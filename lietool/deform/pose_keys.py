@@ -199,7 +199,17 @@ def relative(rest: ArrayLike, frames: ArrayLike) -> Array:
 
 
 def about(A: Array, centre: Array) -> Array:
-    """Return A in coordinates whose origin is the centre."""
+    """Return A in coordinates whose origin is the centre.
+
+    Parameters
+    ----------
+    A : ndarray, shape (..., 4, 4), affine
+    centre : ndarray, shape (3,)
+
+    Returns
+    -------
+    moved : (..., 4, 4), affine
+    """
     moved = A.copy()
     moved[..., :3, 3] += A[..., :3, :3] @ centre - centre
     return moved

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lietool.lie import checks
 from lietool.mesh import elimination, topology
 from lietool.mesh.laplacian import listed, named
 
@@ -88,7 +89,8 @@ class Factor:
 
     def _arguments(self, rhs: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
         where, n, fixed = "solve.Factor.solve", self.count, len(self.fixed)
-        b, given = np.asarray(rhs, float), np.asarray(values, float)
+        b = checks.array(where, "rhs", rhs, (), check=False)
+        given = checks.array(where, "values", values, (), check=False)
         if b.ndim != 2 or len(b) != n:
             topology.fail(where, "rhs", f"an array of shape ({n}, k)", f"shape {b.shape}")
         if given.shape != (fixed, b.shape[1]):

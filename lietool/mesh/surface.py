@@ -138,6 +138,11 @@ def areas(V: ArrayLike, F: ArrayLike) -> Array:
     Returns
     -------
     area : ndarray, shape (m,)
+
+    Raises
+    ------
+    ValueError
+        If V is not finite or F has an index out of range.
     """
     V, F = laplacian.checked("surface.areas", V, F, flat=True)
     return 0.5 * np.linalg.norm(_cross(V, F), axis=1)
@@ -154,6 +159,11 @@ def face_normals(V: ArrayLike, F: ArrayLike) -> Array:
     Returns
     -------
     normal : ndarray, shape (m, 3)
+
+    Raises
+    ------
+    ValueError
+        If V is not finite or F has an index out of range.
     """
     V, F = laplacian.checked("surface.face_normals", V, F, flat=True)
     normal = _unit(_cross(V, F))
@@ -173,6 +183,11 @@ def vertex_normals(V: ArrayLike, F: ArrayLike) -> Array:
     -------
     normal : ndarray, shape (n, 3)
         0 where no face uses the vertex, or its faces have no area.
+
+    Raises
+    ------
+    ValueError
+        If V is not finite or F has an index out of range.
     """
     V, F = laplacian.checked("surface.vertex_normals", V, F, flat=True)
     cross = np.repeat(_cross(V, F), 3, axis=0)
@@ -215,6 +230,11 @@ def weld(V: ArrayLike) -> tuple[Index, Index]:
     first : ndarray of int, shape (k,)
         Ascending: places are numbered as their first vertices come.
     place : ndarray of int, shape (n,)
+
+    Raises
+    ------
+    ValueError
+        If V is not finite.
     """
     V = topology.vertices("surface.weld", "V", V, 3)
     order = np.lexsort(V.T)
