@@ -198,7 +198,7 @@ def face_pairs(F: ArrayLike) -> Index:
     pairs : (p, 2), int
     """
     F = np.asarray(F, np.intp).reshape(-1, 3)
-    half = np.sort(F[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    half = np.sort(topology.half_edges(F), axis=1)
     owner = np.repeat(np.arange(len(F)), 3)
     order = np.lexsort((owner, half[:, 1], half[:, 0]))
     same = np.all(half[order][1:] == half[order][:-1], axis=1)

@@ -99,7 +99,9 @@ def prepare(V: ArrayLike, F: ArrayLike, pinned: ArrayLike) -> Prepared:
 
     V, F = laplacian.checked("arap.prepare", V, F)
     n, m = len(V), len(F)
-    pins = _pins(pinned, n)
+    pins = topology.distinct(
+        "arap.prepare", "pinned", topology.vertex_set("arap.prepare", "pinned", pinned, n)
+    )
     part = surface.health(V, F).part
     number = int(part.max()) + 1
     held = np.bincount(part[pins][part[pins] >= 0], minlength=number) > 0
@@ -163,22 +165,6 @@ def polish(prepared: Prepared, vertices: ArrayLike, rounds: int = 10) -> Polishe
         energy.append(_energy(prepared, J, R))
     residual = float(np.max(np.linalg.norm(x - before, axis=1))) / prepared.size
     return Polished(x, np.array(energy), residual)
-
-
-def _pins(pinned: ArrayLike, n: int) -> Index:
-    a = np.asarray(pinned)
-    if a.ndim != 1 or (a.size and a.dtype.kind not in "iu"):
-        topology.fail(
-            "arap.prepare", "pinned", "whole numbers of shape (k,)", f"{a.dtype} of shape {a.shape}"
-        )
-    a = a.astype(np.intp)
-    if a.size and (a.min() < 0 or a.max() >= n):
-        bad = a[(a < 0) | (a >= n)][0]
-        topology.fail("arap.prepare", "pinned", f"indices of {n} vertices, from 0", f"{bad}")
-    if len(np.unique(a)) < len(a):
-        values, counts = np.unique(a, return_counts=True)
-        topology.fail("arap.prepare", "pinned", "distinct vertices", f"vertex {values[counts > 1][0]} twice")
-    return a
 
 
 def _maps(prepared: Prepared, x: Array) -> Array:

@@ -72,7 +72,7 @@ def surface(where: str, V: ArrayLike, F: ArrayLike) -> tuple[Array, Index]:
     F = topology.faces(where, F, len(V))
     sides = V[F[:, [1, 2, 0]]] - V[F]
     longest = np.max(np.sum(sides * sides, axis=-1), axis=-1)
-    area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=-1)
+    area = 0.5 * np.linalg.norm(topology.area_normals(V, F), axis=-1)
     flat = area <= _FLAT * longest
     if flat.any():
         k = int(np.argmax(flat))

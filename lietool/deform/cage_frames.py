@@ -27,6 +27,9 @@ from lietool.mesh import topology
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
+CANCELLED = 1e-12
+"""Of the areas that it is summed from: a shorter normal is the rounding of 0."""
+
 
 @dataclass(frozen=True, eq=False)
 class Elements:
@@ -104,10 +107,10 @@ def edges(F: ArrayLike) -> Elements:
         got = f"one triangle at the edge of vertices {found.ends[k].tolist()}"
         topology.fail("cage_frames.edges", "F", "a closed surface", got)
     size = int(f.max()) + 1
-    half = np.sort(f[:, [[0, 1], [1, 2], [2, 0]]], axis=-1)
+    half = np.sort(topology.half_edges(f), axis=1)
     key = found.ends[:, 0] * size + found.ends[:, 1]
-    of_face = np.searchsorted(key, half[..., 0] * size + half[..., 1])
-    pairs = of_face[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    of_face = np.searchsorted(key, half[:, 0] * size + half[:, 1]).reshape(-1, 3)
+    pairs = topology.half_edges(of_face)
     ends = found.ends[:, [0, 1, 0]]
     return Elements("edges", f, found.ends, found.sides, ends, pairs)
 
@@ -128,7 +131,7 @@ def corners(F: ArrayLike) -> Elements:
     # Element 3 f + i is the corner i of the face f.
     ends = np.stack([f, np.roll(f, -1, axis=1), np.roll(f, -2, axis=1)], axis=-1).reshape(-1, 3)
     around = np.repeat(np.arange(m), 3)[:, None]
-    within = (3 * np.arange(m)[:, None, None] + np.array([[0, 1], [1, 2], [2, 0]])).reshape(-1, 2)
+    within = topology.half_edges(np.arange(3 * m).reshape(-1, 3))
     # The next face round v after (v, a, b) is (v, b, c).
     size = int(f.max()) + 1
     leaves, comes = ends[:, 0] * size + ends[:, 1], ends[:, 0] * size + ends[:, 2]
@@ -180,7 +183,7 @@ def tetrahedra(elements: Elements, V: ArrayLike) -> Array:
     F = elements.faces
     if F.max() >= len(V):
         topology.fail(where, "V", f"at least {int(F.max()) + 1} vertices", f"{len(V)}")
-    n = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+    n = topology.area_normals(V, F)
     size = np.linalg.norm(n, axis=-1)
     E = V[elements.ends]
     if elements.name == "faces":
@@ -201,9 +204,13 @@ def tetrahedra(elements: Elements, V: ArrayLike) -> Array:
 
 
 def _sized(direction: Array, area: Array) -> Array:
-    """Return vectors of the directions given, of the lengths sqrt(area); 0 where there is no direction."""
+    """Return vectors of the directions given, of the lengths sqrt(area); 0 where there is no direction.
+
+    Normals that cancel but for rounding, as where the surface folds onto itself, have none.
+    """
     length = np.linalg.norm(direction, axis=-1)
-    return direction * (np.sqrt(area) / np.where(length > 0.0, length, 1.0))[:, None]
+    there = length > CANCELLED * area
+    return np.where(there, np.sqrt(area) / np.where(there, length, 1.0), 0.0)[:, None] * direction
 
 
 @dataclass(frozen=True, eq=False)

@@ -146,8 +146,8 @@ def measures(elements: Elements, V: ArrayLike) -> Array:
     -------
     measure : (p,)
     """
-    P = topology.vertices("cage_weights.measures", "V", V, 3)[elements.faces]
-    area = np.linalg.norm(np.cross(P[:, 1] - P[:, 0], P[:, 2] - P[:, 0]), axis=-1)
+    V = topology.vertices("cage_weights.measures", "V", V, 3)
+    area = np.linalg.norm(topology.area_normals(V, elements.faces), axis=-1)
     part = area[elements.around].sum(axis=1)
     return part / part.sum()
 
@@ -169,17 +169,16 @@ def _measure(where: str, elements: Elements, V: Array, measure: ArrayLike | None
 
 def _planes(V: Array, F: Index) -> tuple[Array, Array, float]:
     """Return unit normals (m, 3) and offsets (m,) of the faces' planes, and 3 volume / area."""
-    P = V[F]
-    normal = np.cross(P[:, 1] - P[:, 0], P[:, 2] - P[:, 0])
+    normal, corner = topology.area_normals(V, F), V[F[:, 0]]
     size = np.linalg.norm(normal, axis=-1)
     middle = V.mean(axis=0)
-    solid = np.sum(normal * (P[:, 0] - middle)) / 2.0
+    solid = np.sum(normal * (corner - middle)) / 2.0
     area = size.sum() / 2.0
     if not (size.min() > 0.0 and solid > 0.0):
         must = "a closed cage, oriented outwards, with an area in every face"
         topology.fail("cage_weights.weights", "V", must, f"volume {solid / 3.0:.3g}, area {size.min():.3g}")
     normal = normal / size[:, None]
-    return normal, np.sum(normal * P[:, 0], axis=-1), float(solid / area)
+    return normal, np.sum(normal * corner, axis=-1), float(solid / area)
 
 
 def _influence(where: str, w: Array, shape: tuple[int, int], begin: int) -> None:

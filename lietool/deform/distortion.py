@@ -197,7 +197,7 @@ def flipped_against(rest: ArrayLike, F: ArrayLike, deformed: ArrayLike, guide: A
     if G.shape != (len(F), 3, 3) or not np.isfinite(G).all():
         topology.fail(where, "guide", f"finite, of shape ({len(F)}, 3, 3)", f"shape {G.shape} or nan")
     one, two = (np.einsum("mij,mj->mi", G, V[F[:, k]] - V[F[:, 0]]) for k in (1, 2))
-    return _dot(np.cross(one, two), _normals(U, F)) < 0.0
+    return _dot(np.cross(one, two), topology.area_normals(U, F)) < 0.0
 
 
 def flipped_by_neighbours(rest: ArrayLike, F: ArrayLike, deformed: ArrayLike) -> Mask:
@@ -271,10 +271,6 @@ def _turned(V: Array, F: Index, U: Array) -> tuple[Array, Array, Array]:
     n = np.cross(one, two)
     # How long the normal is does not matter to the rotation, and a face without area has none.
     return polar.rotation(np.stack([one, two, n], axis=-1) @ at.axes, check=False), at.normal, n
-
-
-def _normals(V: Array, F: Index) -> Array:
-    return np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
 
 
 def _dot(a: Array, b: Array) -> Array:

@@ -209,7 +209,7 @@ def follow(
 
     V, F = laplacian.checked("harmonic.follow", V, F)
     vertex, handle = _handles("harmonic.follow", handles, len(V))
-    number, part = _parts(len(V), F)
+    number, part = topology.parts(F, len(V))
     held = np.bincount(part[vertex], minlength=number) > 0
     kept = np.flatnonzero(held[part])
     new = np.full(len(V), -1)
@@ -236,33 +236,24 @@ def follow(
 
 def _prepare(where: str, n: int, F: Index, Q: Any, handles: Handles) -> Prepared:
     vertex, handle = _handles(where, handles, n)
-    number, part = _parts(n, F)
-    bare = np.bincount(part[vertex], minlength=number) == 0
-    if bare.any():
-        first = np.unique(part, return_index=True)[1][bare]
+    number, part = topology.parts(F, n)
+    first = topology.unheld(number, part, vertex)
+    if len(first):
         got = f"{len(first)} of {number} without one, with {laplacian.listed('vertex', first)}"
         remedy = "Give each a handle, or use harmonic.follow."
         topology.fail(where, "handles", "in every connected part", got, remedy)
     return Prepared(solve.factor(Q, vertex), handle)
 
 
-def _parts(n: int, F: Index) -> tuple[int, Index]:
-    return topology.components(n, F[:, [[0, 1], [1, 2]]].reshape(-1, 2))
-
-
 def _handles(where: str, handles: Handles, n: int) -> tuple[Index, Index]:
     """Return the vertices of all handles and the handle of each."""
-    sets = [np.asarray(h) for h in handles]
+    sets = [topology.vertex_set(where, f"handles[{k}]", h, n) for k, h in enumerate(handles)]
     if not sets:
         topology.fail(where, "handles", "at least one set of vertices", "none")
     for k, s in enumerate(sets):
-        if s.ndim != 1 or not s.size or s.dtype.kind not in "iu":
-            got = f"{s.dtype} of shape {s.shape} as handle {k}"
-            topology.fail(where, "handles", "sets of whole numbers, at least one in each", got)
-        if s.min() < 0 or s.max() >= n:
-            got = f"{s[(s < 0) | (s >= n)][0]} in handle {k}"
-            topology.fail(where, "handles", f"indices of {n} vertices, from 0", got)
-    vertex = np.concatenate(sets).astype(np.intp)
+        if not len(s):
+            topology.fail(where, f"handles[{k}]", "at least one vertex", "none")
+    vertex = np.concatenate(sets)
     handle = np.repeat(np.arange(len(sets)), [len(s) for s in sets])
     both, count = np.unique(vertex, return_counts=True)
     if (count > 1).any():

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lietool.deform import cage_checks
+from lietool.mesh import topology
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -92,8 +93,7 @@ def coarsen(V: Array, F: Index, count: int) -> tuple[Array, Index]:
     size = float(np.max(np.ptp(V, axis=0)))
     surface = _Surface(V.copy(), F.copy(), around, 1e-12 * size, [0] * len(V))
     left = len(F)
-    half = np.sort(F[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    every = np.unique(half, axis=0)
+    every, _ = topology.edge_counts(F)
     for start in range(0, len(every), 200):
         _evaluate(surface, [(a, b) for a, b in every[start : start + 200].tolist()])
     while left > count and (entry := _next(surface)) is not None:
@@ -239,11 +239,7 @@ def _crosses(surface: _Surface, edge: Edge, F: Index, new: Array, point: Array) 
     V = np.concatenate([surface.points, point[None]])
     fan = np.where(np.isin(F, edge), len(surface.points), F)
     both = [(surface.faces[near], fan), (fan, surface.faces[near])]
-    return any(len(cage_checks.crossings(V, one, _edges(two))) > 0 for one, two in both)
-
-
-def _edges(F: Index) -> Index:
-    return np.unique(np.sort(F[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    return any(len(cage_checks.crossings(V, one, topology.edge_counts(two)[0])) > 0 for one, two in both)
 
 
 def _collapse(surface: _Surface, edge: Edge, point: Array) -> int:

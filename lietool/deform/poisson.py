@@ -31,6 +31,10 @@ Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
 
+WHOLE = 1e-12
+"""Weights that lack less of 1 leave nothing to the pins."""
+
+
 @dataclass(frozen=True, eq=False)
 class Prepared:
     """All that does not depend on where the handles are dragged.
@@ -139,11 +143,11 @@ def prepare(
     """
     where = "poisson.prepare"
     V, F = laplacian.checked(where, V, F)
-    sets = [_vertices(where, "pins", pins, len(V))]
+    sets = [np.unique(topology.vertex_set(where, "pins", pins, len(V)))]
     if not len(handles):
         topology.fail(where, "handles", "at least one set of vertices", "none")
     for i, handle in enumerate(handles):
-        sets.append(_vertices(where, f"handles[{i}]", handle, len(V)))
+        sets.append(np.unique(topology.vertex_set(where, f"handles[{i}]", handle, len(V))))
         if not len(sets[-1]):
             topology.fail(where, f"handles[{i}]", "at least one vertex", "none")
     _disjoint(where, sets, len(V))
@@ -234,7 +238,8 @@ def _without(prepared: Prepared, able: Mask) -> Mask:
     """Which faces weigh a transformation that has no parameters."""
     lacking = np.any(prepared.weights[:, ~able[1:]] != 0.0, axis=1)
     if not able[0]:
-        lacking |= prepared.weights.sum(axis=1) != 1.0
+        # Weights that sum to 1 but for rounding leave nothing to the pins.
+        lacking |= np.abs(prepared.weights.sum(axis=1) - 1.0) > WHOLE
     return lacking
 
 
@@ -255,21 +260,6 @@ def _right(prepared: Prepared, guide: Array) -> Array:
     return -(prepared.divergence @ np.swapaxes(guide, 1, 2).reshape(-1, 3))
 
 
-def _vertices(where: str, name: str, chosen: ArrayLike, count: int) -> Index:
-    try:
-        a = np.asarray(chosen)
-    except ValueError:
-        topology.fail(where, name, "whole numbers of shape (k,)", "a ragged list")
-    if a.dtype.kind == "b" and a.shape == (count,):
-        return np.flatnonzero(a)
-    if a.ndim != 1 or (a.size and a.dtype.kind not in "iu"):
-        topology.fail(where, name, "whole numbers of shape (k,)", f"{a.dtype} of shape {a.shape}")
-    if a.size and (a.min() < 0 or a.max() >= count):
-        got = f"{a[(a < 0) | (a >= count)][0]}"
-        topology.fail(where, name, f"indices of the {count} vertices, from 0", got)
-    return np.unique(a).astype(np.intp)
-
-
 def _disjoint(where: str, sets: Sequence[Index], count: int) -> None:
     """Refuse a vertex that two of the sets own."""
     owners = np.zeros(count, int)
@@ -284,11 +274,9 @@ def _disjoint(where: str, sets: Sequence[Index], count: int) -> None:
 
 def _held(where: str, F: Index, count: int, fixed: Index) -> None:
     """Refuse connected parts that nothing holds."""
-    number, part = topology.components(count, F[:, [0, 1, 1, 2]].reshape(-1, 2))
-    loose = np.bincount(part[fixed], minlength=number) == 0
-    if loose.any():
-        first = np.unique(part, return_index=True)[1][loose]
-        which = laplacian.named("vertex", np.isin(np.arange(count), first))
-        got = f"none in {len(first)} of {number}, those of {which}"
+    number, part = topology.parts(F, count)
+    first = topology.unheld(number, part, fixed)
+    if len(first):
+        got = f"none in {len(first)} of {number}, those of {laplacian.listed('vertex', np.sort(first))}"
         remedy = "Pin a vertex in each."
         topology.fail(where, "pins and handles", "a vertex in every connected part", got, remedy)

@@ -169,8 +169,8 @@ def prepare(V: ArrayLike, F: ArrayLike, pins: ArrayLike = ()) -> Prepared:
     """
     where = "stitch.prepare"
     V, F = laplacian.checked(where, V, F)
-    pins = _pins(where, pins, len(V))
-    count, component = topology.components(len(V), F[:, [0, 1, 1, 2]].reshape(-1, 2))
+    pins = topology.distinct(where, "pins", topology.vertex_set(where, "pins", pins, len(V)))
+    count, component = topology.parts(F, len(V))
     floating = np.ones(count, bool)
     floating[component[pins]] = False
     anchors = np.unique(component, return_index=True)[1][floating]
@@ -304,18 +304,3 @@ def _points(where: str, name: str, x: ArrayLike, count: int) -> Array:
     if p.shape != (count, 3):
         checks.fail(where, name, f"an array of shape ({count}, 3)", f"shape {p.shape}", None)
     return p
-
-
-def _pins(where: str, pins: ArrayLike, count: int) -> Index:
-    p = np.asarray(pins)
-    if not p.size:
-        return np.zeros(0, np.intp)
-    if p.ndim != 1 or p.dtype.kind not in "iu":
-        checks.fail(where, "pins", "whole numbers of shape (k,)", f"{p.dtype} of shape {p.shape}", None)
-    if p.min() < 0 or p.max() >= count:
-        index = checks.first((p < 0) | (p >= count))
-        checks.fail(where, "pins", f"vertices, 0 to {count - 1}", f"{p[index]}", index)
-    if len(np.unique(p)) < len(p):
-        values, counts = np.unique(p, return_counts=True)
-        checks.fail(where, "pins", "different vertices", f"vertex {values[counts > 1][0]} twice", None)
-    return p.astype(np.intp)

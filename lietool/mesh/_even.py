@@ -140,7 +140,7 @@ def _joined(V: Array, F: Index, size: Array) -> tuple[Array, Index, Array]:
     G = to[F]
     owner = of[F].max(axis=1)
     lives = (G[:, 0] != G[:, 1]) & (G[:, 1] != G[:, 2]) & (G[:, 2] != G[:, 0])
-    before, after = _crossed(V, F), _crossed(W, G)
+    before, after = topology.area_normals(V, F), topology.area_normals(W, G)
     dot = np.sum(before * after, axis=1)
     both = np.sqrt(np.sum(before * before, axis=1) * np.sum(after * after, axis=1))
     sides3 = np.stack([_lengths(W, G[:, [i, j]]) for i, j in ((0, 1), (1, 2), (2, 0))], axis=1)
@@ -154,10 +154,6 @@ def _joined(V: Array, F: Index, size: Array) -> tuple[Array, Index, Array]:
     lives = (G[:, 0] != G[:, 1]) & (G[:, 1] != G[:, 2]) & (G[:, 2] != G[:, 0])
     used, G = np.unique(G[lives], return_inverse=True)
     return W[used], G.reshape(-1, 3), size[used]
-
-
-def _crossed(V: Array, F: Index) -> Array:
-    return np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
 
 
 def _cotangent(V: Array, corner: Index, a: Index, b: Index) -> Array:
@@ -192,9 +188,9 @@ def _turned(V: Array, F: Index, by_angle: bool) -> Index:
     a, b = np.where(forward, a, b), np.where(forward, b, a)
     c, d = across.T
     new = np.stack([np.stack([c, a, d], axis=1), np.stack([d, b, c], axis=1)], axis=1)
-    old = _crossed(V, F[sides[:, 0]]) + _crossed(V, F[sides[:, 1]])
+    old = topology.area_normals(V, F[sides[:, 0]]) + topology.area_normals(V, F[sides[:, 1]])
     for k in (0, 1):
-        made = _crossed(V, new[:, k])
+        made = topology.area_normals(V, new[:, k])
         dot = np.sum(made * old, axis=1)
         want &= dot > 0.75 * np.sqrt(np.sum(made**2, axis=1) * np.sum(old**2, axis=1))
     rank = _ranks(_by(-gain, np.flatnonzero(want)), len(ends))
@@ -208,7 +204,7 @@ def _turned(V: Array, F: Index, by_angle: bool) -> Index:
 
 def _spread(V: Array, F: Index, size: Array) -> Array:
     """Each vertex moved along the surface to the mean of its neighbours, weighed by their triangles."""
-    cross = _crossed(V, F)
+    cross = topology.area_normals(V, F)
     area = np.sqrt(np.sum(cross**2, axis=1))
     # Where small triangles are wanted, the same area weighs more.
     weight = np.bincount(F.ravel(), np.repeat(area, 3), len(V)) / size**3

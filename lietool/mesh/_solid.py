@@ -1,4 +1,4 @@
-"""The record of a solid, and the normals of its vertices."""
+"""The record of a solid; with normals, which are those of any surface."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -8,8 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lietool.mesh.surface import vertex_normals as normals
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
+
+__all__ = ["Solid", "changed", "frozen", "normals"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,25 +75,6 @@ class Solid:
 
     def _named(self, names: tuple[str, ...]) -> NDArray[np.bool_]:
         return np.array([part.startswith(names) for part in self.parts])
-
-
-def normals(V: Array, F: Index) -> Array:
-    """Return unit normals of the vertices: the mean of the triangles', the larger ones weighing more.
-
-    Parameters
-    ----------
-    V : ndarray, shape (n, 3)
-    F : ndarray of int, shape (m, 3)
-
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        0 where every triangle at a vertex has no area.
-    """
-    cross = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
-    sums = np.stack([np.bincount(F.ravel(), np.repeat(cross[:, k], 3), len(V)) for k in range(3)], axis=1)
-    length = np.sqrt(np.sum(sums * sums, axis=1, keepdims=True))
-    return sums / np.where(length > 0.0, length, 1.0)
 
 
 def changed(solid: Solid, **changes: Any) -> Solid:

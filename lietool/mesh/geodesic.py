@@ -72,7 +72,7 @@ def prepare(V: ArrayLike, F: ArrayLike) -> Prepared:
     L = laplacian.cotangent(V, F)
     M = laplacian.mass(V, F)
     warm = _diagonal(M) + _time(V, F, state.part) * L
-    ends, count = _edges(F)
+    ends, count = topology.edge_counts(F)
     cold = np.union1d(ends[count == 1].ravel(), state.unused)
     cool = _factor(warm, cold) if state.boundary else None
     held = np.unique(state.part, return_index=True)[1]
@@ -165,21 +165,13 @@ def _time(V: Array, F: Index, part: Index) -> float:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import dijkstra
 
-    ends, _ = _edges(F)
+    ends, _ = topology.edge_counts(F)
     length = np.linalg.norm(V[ends[:, 0]] - V[ends[:, 1]], axis=1)
     graph = coo_array((length, (ends[:, 0], ends[:, 1])), (len(V), len(V)))
     seeds = np.unique(part, return_index=True)[1]
     far = dijkstra(graph.tocsr(), directed=False, indices=seeds[part[seeds] >= 0], min_only=True)
     extent = float(np.max(far[np.isfinite(far)]))
     return max(float(np.mean(length)), extent / REACH) ** 2
-
-
-def _edges(F: Index) -> tuple[Index, Index]:
-    """Return the edges (k, 2), and how many faces each has."""
-    half = np.sort(F[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    size = int(F.max()) + 1
-    key, count = np.unique(half[:, 0] * size + half[:, 1], return_counts=True)
-    return np.stack([key // size, key % size], axis=1), count
 
 
 def _diagonal(M: Array) -> Any:
@@ -189,14 +181,11 @@ def _diagonal(M: Array) -> Any:
 
 
 def _set(source: ArrayLike, n: int, k: int) -> Index:
-    a = np.asarray(source)
-    if a.ndim != 1 or not a.size or a.dtype.kind not in "iu":
-        got = f"{a.dtype} of shape {a.shape} as set {k}"
-        topology.fail("geodesic.solve", "sources", "sets of whole numbers, at least one in each", got)
-    if a.min() < 0 or a.max() >= n:
-        got = f"{a[(a < 0) | (a >= n)][0]} in set {k}"
-        topology.fail("geodesic.solve", "sources", f"indices of {n} vertices, from 0", got)
-    return a.astype(np.intp)
+    name = f"sources[{k}]"
+    found = topology.vertex_set("geodesic.solve", name, source, n)
+    if not len(found):
+        topology.fail("geodesic.solve", name, "at least one vertex", "none")
+    return found
 
 
 def _flow(factor: sparse.Factor, start: Array) -> Array:

@@ -78,7 +78,7 @@ def mass(V: ArrayLike, F: ArrayLike) -> Array:
         If V or F is none.
     """
     V, F = checked("laplacian.mass", V, F, flat=True)
-    third = np.linalg.norm(_cross(V, F), axis=1) / 6.0
+    third = np.linalg.norm(topology.area_normals(V, F), axis=1) / 6.0
     return np.bincount(F.ravel(), np.repeat(third, 3), len(V)).astype(float, copy=False)
 
 
@@ -109,7 +109,7 @@ def voronoi_mass(V: ArrayLike, F: ArrayLike) -> Array:
     square = cot * np.einsum("fki,fki->fk", edge, edge)
     # The perpendicular bisectors cut an eighth of cot |e|^2 off at both ends of an edge.
     share = (square.sum(axis=1, keepdims=True) - square) / 8.0
-    area = 0.5 * np.linalg.norm(_cross(V, F), axis=1)[:, None]
+    area = 0.5 * np.linalg.norm(topology.area_normals(V, F), axis=1)[:, None]
     obtuse = (cot < 0.0).any(axis=1, keepdims=True)
     share = np.where(obtuse, np.where(cot < 0.0, area / 2.0, area / 4.0), share)
     return np.bincount(F.ravel(), share.ravel(), len(V)).astype(float, copy=False)
@@ -136,7 +136,7 @@ def gradient(V: ArrayLike, F: ArrayLike) -> Any:
     from scipy.sparse import csr_array
 
     V, F = checked("laplacian.gradient", V, F)
-    normal = _cross(V, F)
+    normal = topology.area_normals(V, F)
     # The gradient of the function that is 1 at a corner: the opposite edge, turned by a quarter.
     edge = V[F[:, [2, 0, 1]]] - V[F[:, [1, 2, 0]]]
     hat = np.cross(normal[:, None], edge) / np.einsum("fi,fi->f", normal, normal)[:, None, None]
@@ -173,7 +173,7 @@ def divergence(V: ArrayLike, F: ArrayLike) -> Any:
 
     V, F = checked("laplacian.divergence", V, F)
     G = gradient(V, F)
-    area = 0.5 * np.linalg.norm(_cross(V, F), axis=1)
+    area = 0.5 * np.linalg.norm(topology.area_normals(V, F), axis=1)
     G.data *= -np.repeat(area, 9)
     return csr_array(G.T)
 
@@ -207,7 +207,7 @@ def degenerate(V: Array, F: Index) -> NDArray[np.bool_]:
     """Return which triangles (m,) have no area: twice it is at most FLAT times their longest edge squared."""
     edge = V[F[:, [1, 2, 0]]] - V[F]
     longest = np.max(np.einsum("fki,fki->fk", edge, edge), axis=1)
-    return ~(np.linalg.norm(_cross(V, F), axis=1) > FLAT * longest)
+    return ~(np.linalg.norm(topology.area_normals(V, F), axis=1) > FLAT * longest)
 
 
 def named(what: str, bad: NDArray[np.bool_]) -> str:
@@ -219,7 +219,3 @@ def listed(what: str, index: Index, most: int = 4) -> str:
     """Return the first few of some indices as words."""
     more = f" and {len(index) - most} more" if len(index) > most else ""
     return f"{what} {', '.join(map(str, index[:most]))}{more}"
-
-
-def _cross(V: Array, F: Index) -> Array:
-    return np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])

@@ -128,7 +128,7 @@ def factor(L: Any, fixed: ArrayLike) -> Factor:
     where = "solve.factor"
     L = _matrix(where, L)
     n = L.shape[0]
-    fixed = _vertices(where, fixed, n)
+    fixed = topology.distinct(where, "fixed", topology.vertex_set(where, "fixed", fixed, n))
     given = np.zeros(n, bool)
     given[fixed] = True
     free = np.flatnonzero(~given)
@@ -149,20 +149,6 @@ def _matrix(where: str, L: Any) -> Any:
     return L
 
 
-def _vertices(where: str, fixed: ArrayLike, n: int) -> Index:
-    a = np.asarray(fixed)
-    if a.ndim != 1 or (a.size and a.dtype.kind not in "iu"):
-        topology.fail(where, "fixed", "whole numbers of shape (k,)", f"{a.dtype} of shape {a.shape}")
-    a = a.astype(np.intp)
-    if a.size and (a.min() < 0 or a.max() >= n):
-        bad = a[(a < 0) | (a >= n)][0]
-        topology.fail(where, "fixed", f"indices of {n} vertices, from 0", f"{bad}")
-    if len(np.unique(a)) < len(a):
-        values, counts = np.unique(a, return_counts=True)
-        topology.fail(where, "fixed", "distinct vertices", f"vertex {values[counts > 1][0]} twice")
-    return a
-
-
 def _refuse_floating(where: str, L: Any, given: NDArray[np.bool_]) -> None:
     """Refuse parts without a given value whose rows sum to 0: a constant may be added to any solution."""
     n = L.shape[0]
@@ -175,9 +161,8 @@ def _refuse_floating(where: str, L: Any, given: NDArray[np.bool_]) -> None:
     used = L.data != 0.0
     number, part = topology.components(n, np.stack([L.indices[used], column[used]], axis=1))
     held = given | (np.abs(L.sum(axis=0)) > FLOATING * diagonal)
-    floating = np.bincount(part[held], minlength=number) == 0
-    if floating.any():
-        first = np.unique(part, return_index=True)[1][floating]
+    first = topology.unheld(number, part, np.flatnonzero(held))
+    if len(first):
         got = f"none in {len(first)} of {number}, those of {listed('vertex', first)}"
         topology.fail(where, "fixed", "a vertex in every connected part", got, "Fix a vertex in each.")
 

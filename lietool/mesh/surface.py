@@ -111,7 +111,7 @@ def health(V: ArrayLike, F: ArrayLike) -> Health:
     """
     V, F = laplacian.checked("surface.health", V, F, flat=True)
     n = len(V)
-    half = F[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    half = topology.half_edges(F)
     half = half[half[:, 0] != half[:, 1]]
     low, high = half.min(axis=1), half.max(axis=1)
     key, place, count = np.unique(low * n + high, return_inverse=True, return_counts=True)
@@ -145,7 +145,7 @@ def areas(V: ArrayLike, F: ArrayLike) -> Array:
         If V is not finite or F has an index out of range.
     """
     V, F = laplacian.checked("surface.areas", V, F, flat=True)
-    return 0.5 * np.linalg.norm(_cross(V, F), axis=1)
+    return 0.5 * np.linalg.norm(topology.area_normals(V, F), axis=1)
 
 
 def face_normals(V: ArrayLike, F: ArrayLike) -> Array:
@@ -166,7 +166,7 @@ def face_normals(V: ArrayLike, F: ArrayLike) -> Array:
         If V is not finite or F has an index out of range.
     """
     V, F = laplacian.checked("surface.face_normals", V, F, flat=True)
-    normal = _unit(_cross(V, F))
+    normal = _unit(topology.area_normals(V, F))
     normal[laplacian.degenerate(V, F)] = 0.0
     return normal
 
@@ -190,7 +190,7 @@ def vertex_normals(V: ArrayLike, F: ArrayLike) -> Array:
         If V is not finite or F has an index out of range.
     """
     V, F = laplacian.checked("surface.vertex_normals", V, F, flat=True)
-    cross = np.repeat(_cross(V, F), 3, axis=0)
+    cross = np.repeat(topology.area_normals(V, F), 3, axis=0)
     corner = F.ravel()
     total = np.stack([np.bincount(corner, cross[:, a], len(V)) for a in range(3)], axis=1)
     return _unit(total.astype(float, copy=False))
@@ -247,10 +247,6 @@ def weld(V: ArrayLike) -> tuple[Index, Index]:
     rank = np.empty(len(head), np.intp)
     rank[np.argsort(head)] = np.arange(len(head))
     return np.sort(head), rank[group]
-
-
-def _cross(V: Array, F: Index) -> Array:
-    return np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
 
 
 def _unit(x: Array) -> Array:

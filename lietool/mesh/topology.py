@@ -103,6 +103,74 @@ def areas(V: Array, F: Index) -> Array:
     return 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
 
 
+def vertex_set(where: str, name: str, chosen: ArrayLike, count: int) -> Index:
+    """Return some of `count` vertices as indices (k,), in the order given; there may be none.
+
+    An array (count,) of true and false stands for those where it is true.
+
+    Parameters
+    ----------
+    where, name : str
+        Who asks, and what the argument is called, for the message.
+    chosen : array_like of int, shape (k,)
+    count : int
+
+    Returns
+    -------
+    chosen : (k,), int
+
+    Raises
+    ------
+    ValueError
+        If they are no whole numbers of one axis, or one is no vertex.
+    """
+    try:
+        a = np.asarray(chosen)
+    except ValueError:
+        fail(where, name, "whole numbers of shape (k,)", "a ragged list")
+    if a.dtype.kind == "b" and a.shape == (count,):
+        return np.flatnonzero(a)
+    if a.ndim != 1 or (a.size and a.dtype.kind not in "iu"):
+        fail(where, name, "whole numbers of shape (k,)", f"{a.dtype} of shape {a.shape}")
+    a = a.astype(np.intp)
+    outside = (a < 0) | (a >= count)
+    if outside.any():
+        fail(where, name, f"indices of the {count} vertices, from 0", f"{a[outside][0]}")
+    return a
+
+
+def distinct(where: str, name: str, chosen: Index) -> Index:
+    """Return vertices (k,) as they are, if there is none twice among them.
+
+    Raises
+    ------
+    ValueError
+        If one is.
+    """
+    values, counts = np.unique(chosen, return_counts=True)
+    if len(values) < len(chosen):
+        fail(where, name, "distinct vertices", f"vertex {values[counts > 1][0]} twice")
+    return chosen
+
+
+def area_normals(V: Array, F: Index) -> Array:
+    """Return the normals (m, 3) of triangles in space, as long as twice their areas."""
+    return np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+
+
+def half_edges(F: Index) -> Index:
+    """Return the sides (3 m, 2) of triangles, three of each in turn, in its direction."""
+    return F[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+
+
+def edge_counts(F: Index) -> tuple[Index, Index]:
+    """Return the edges (k, 2) of any triangles, sorted, the smaller index first, and how many have each."""
+    half = np.sort(half_edges(F), axis=1)
+    size = int(F.max()) + 1
+    key, count = np.unique(half[:, 0] * size + half[:, 1], return_counts=True)
+    return np.stack([key // size, key % size], axis=1), count
+
+
 @dataclass(frozen=True, eq=False)
 class Edges:
     """The edges of a mesh.
@@ -132,7 +200,7 @@ def edges(where: str, F: Index) -> Edges:
     ValueError
         If an edge has three triangles or more, or two that run through it in the same direction.
     """
-    half = F[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    half = half_edges(F)
     owner = np.repeat(np.arange(len(F)), 3)
     size = int(F.max()) + 1
     key = half.min(axis=1) * size + half.max(axis=1)
@@ -174,6 +242,20 @@ def components(count: int, pairs: Index) -> tuple[int, Index]:
     return int(number), labels.astype(np.intp)
 
 
+def parts(F: Index, count: int) -> tuple[int, Index]:
+    """Return the number of connected parts of `count` vertices, and the part of each.
+
+    A vertex that no triangle uses is a part by itself.
+    """
+    return components(count, F[:, [0, 1, 1, 2]].reshape(-1, 2))
+
+
+def unheld(number: int, part: Index, held: Index) -> Index:
+    """Return the first vertex of each part that has none of those that are held."""
+    bare = np.bincount(part[held], minlength=number) == 0
+    return np.unique(part, return_index=True)[1][bare]
+
+
 def boundary(F: Index) -> list[Index]:
     """Return the boundary loops, each the vertices in the order of its triangles; the longest first.
 
@@ -182,7 +264,7 @@ def boundary(F: Index) -> list[Index]:
     ValueError
         If two parts of the boundary touch in one vertex.
     """
-    half = F[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    half = half_edges(F)
     size = int(F.max()) + 1
     # A boundary edge is one whose reverse no triangle has.
     there, back = half[:, 0] * size + half[:, 1], half[:, 1] * size + half[:, 0]

@@ -130,7 +130,7 @@ def test_broken_arguments_are_refused():
     V, F = bar()
     for pins, message in [
         ([0, 0], "distinct vertices; got vertex 0 twice"),
-        ([len(V)], f"indices of {len(V)} vertices, from 0; got {len(V)}"),
+        ([len(V)], f"indices of the {len(V)} vertices, from 0; got {len(V)}"),
         ([0.5], "whole numbers of shape"),
     ]:
         with pytest.raises(ValueError, match=f"^arap.prepare: pinned must be {message}"):

@@ -395,6 +395,16 @@ def test_a_vertex_whose_normal_lies_in_its_face_has_no_corner():
     assert elements.count == 36
 
 
+def test_where_a_surface_lies_on_itself_the_rounding_of_normals_is_no_direction():
+    F = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]
+    for seed in range(5):
+        R = Rotation.random(random_state=seed).as_matrix()
+        with pytest.raises(ValueError, match=r"^cage_frames\.rest: V must be a cage with a volume in every"):
+            cage_frames.rest(
+                cage_frames.edges(F), np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) @ R.T
+            )
+
+
 def test_no_points_are_moved_nowhere():
     V, F = box()
     assert cage.solve(cage.prepare(np.zeros((0, 3)), V, F), V).points.shape == (0, 3)

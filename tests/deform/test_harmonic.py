@@ -104,14 +104,16 @@ def test_handles_may_be_vertices_that_no_face_uses():
 def test_broken_handles_are_refused():
     V, F = sphere(1)
     for handles, message in [
-        ([], "at least one set of vertices; got none"),
-        ([[0], []], "at least one in each; got float64 of shape \\(0,\\) as handle 1"),
-        ([[0], [0]], "disjoint; got vertex 0 twice, in handles 0 and 1"),
-        ([[0, 0]], "disjoint; got vertex 0 twice, in handles 0 and 0"),
-        ([[len(V)]], f"indices of {len(V)} vertices, from 0; got {len(V)} in handle 0"),
-        ([[-1]], "from 0; got -1 in handle 0"),
+        ([], "handles must be at least one set of vertices; got none"),
+        ([[0], []], r"handles\[1\] must be at least one vertex; got none"),
+        ([[0], [0]], "handles must be disjoint; got vertex 0 twice, in handles 0 and 1"),
+        ([[0, 0]], "handles must be disjoint; got vertex 0 twice, in handles 0 and 0"),
+        ([[len(V)]], rf"handles\[0\] must be indices of the {len(V)} vertices, from 0; got {len(V)}"),
+        ([[-1]], r"handles\[0\] must be indices of the 42 vertices, from 0; got -1"),
+        ([[0, 1.5]], r"handles\[0\] must be whole numbers of shape \(k,\); got float64"),
+        ([[0, [1, 2]]], r"handles\[0\] must be whole numbers of shape \(k,\); got a ragged list"),
     ]:
-        with pytest.raises(ValueError, match=f"^harmonic.prepare_harmonic: handles must be [^\n]*{message}"):
+        with pytest.raises(ValueError, match=rf"^harmonic\.prepare_harmonic: {message}[^\n]*$"):
             harmonic.harmonic(V, F, handles)
     with pytest.raises(ValueError, match=r"^harmonic.prepare_biharmonic: F must be triangles with an area"):
         harmonic.biharmonic(V, np.vstack([F, [[0, 1, 1]]]), [[0]])

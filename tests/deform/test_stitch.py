@@ -248,8 +248,8 @@ FLAT = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]], float)
             r"F must be triangles with an area.*face 1",
         ),
         (lambda V, F: stitch.prepare(V * np.nan, F), "V must be finite"),
-        (lambda V, F: stitch.prepare(V, F, [3, 3]), "pins must be different vertices; got vertex 3 twice"),
-        (lambda V, F: stitch.prepare(V, F, [99]), "pins must be vertices, 0 to 24; got 99"),
+        (lambda V, F: stitch.prepare(V, F, [3, 3]), "pins must be distinct vertices; got vertex 3 twice"),
+        (lambda V, F: stitch.prepare(V, F, [99]), "pins must be indices of the 25 vertices, from 0; got 99"),
         (lambda V, F: stitch.prepare(V, F, [0.5]), "pins must be whole numbers"),
         (
             lambda V, F: stitch.solve(stitch.prepare(V, F), np.eye(3)),

@@ -64,11 +64,18 @@ def test_singular_ones_beyond_that_are_refused():
         solve.factor(L, []).solve(np.array([[1.0], [0.0]]), np.zeros((0, 1)))
 
 
+def test_vertices_may_be_told_by_a_mask():
+    L, b = chain(4), np.arange(4.0)[:, None]
+    given = np.ones((2, 1))
+    by_mask = solve.factor(L, [True, False, False, True]).solve(b, given)
+    np.testing.assert_array_equal(by_mask, solve.factor(L, [0, 3]).solve(b, given))
+
+
 def test_broken_arguments_are_refused():
     L = chain(4)
     for fixed, message in [
         ([0, 0], "distinct vertices; got vertex 0 twice"),
-        ([4], "indices of 4 vertices, from 0; got 4"),
+        ([4], "indices of the 4 vertices, from 0; got 4"),
         ([0.5], "whole numbers"),
         ([[0]], "whole numbers"),
     ]:
