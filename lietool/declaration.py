@@ -56,10 +56,7 @@ class Plate:
 
 @dataclass(frozen=True)
 class Time:
-    """The parameter that an animation sweeps: back and forth, or round and round where it is `closed`.
-
-    Where there are `moments`, it goes through these, once.
-    """
+    """What an animation sweeps: back and forth, round and round where `closed`, or once through `moments`."""
 
     param: str
     start: float

@@ -46,7 +46,7 @@ _WORDS = {
     ),
     "strings": (
         "name=lower centre=0,0,-2.2",
-        f"name=upper centre=0,0,2.2 axis=0,0,1 degrees={_TURN} translation=0,0.3,-0.5",
+        f"name=upper centre=0,0,2.2 axis=0,-0.1,1 degrees={_TURN} translation=0,0.3,-0.5",
     ),
     "vortex": (f"name=eye centre=0,0,0 axis=0,0,1 degrees={_TURN} translation=0,0,-1.1",),
     "particles": (
@@ -126,6 +126,7 @@ def _duck() -> tuple[Mesh, Look, Recipe, None]:
         beak,
         eyes=_eyes(s),
         eye=s.eye,
+        margin=1.16,
     )
     return _mesh(s), look, Recipe(power=2.5), None
 
@@ -183,7 +184,9 @@ def _octopus() -> tuple[Mesh, Look, Recipe, Array]:
 def _vortex() -> tuple[Mesh, Look, Recipe, None]:
     cloud = particles.disc(18000, 12)
     tones = (style.AXIS_Z, style.SHELLS[1], style.SHELLS[0])
-    return _cloud(cloud, tones, Look((1.0, 0.0, 0.62), 0.3, dots=3.2), Recipe("cutoff", 1.6, 1.05))
+    return _cloud(
+        cloud, tones, Look((1.0, 0.0, 0.62), 0.3, dots=3.2, margin=1.04), Recipe("cutoff", 1.6, 1.05)
+    )
 
 
 def _particles() -> tuple[Mesh, Look, Recipe, None]:
@@ -198,7 +201,9 @@ def _particles() -> tuple[Mesh, Look, Recipe, None]:
         style.AXIS_Y,
         style.ROUTE_1,
     )
-    return _cloud(cloud, tones, Look((0.25, -1.0, 0.2), 0.35, dots=3.4), Recipe("cutoff", 2.0, 0.9))
+    return _cloud(
+        cloud, tones, Look((0.25, -1.0, 0.2), 0.35, dots=3.4, margin=1.06), Recipe("cutoff", 2.0, 0.9)
+    )
 
 
 def _cloud(

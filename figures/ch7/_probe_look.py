@@ -83,7 +83,7 @@ class Look:
     dots: float = 0.0
     stands: bool = True
     y_up: bool = False
-    margin: float = 1.06
+    margin: float = 1.10
 
     def turned(self, around: float, above: float) -> "Look":
         """Return the same, seen from elsewhere: degrees round the shape and upwards."""

@@ -51,8 +51,9 @@ _KINDS = ("inverse-distance", "cutoff", "gaussian")
             equations=("K 9", "K 3"),
             caption=(
                 "The lower probe stays; the upper one turns by 480 degrees and is moved. By rotation vectors "
-                "the strings wind around each other by all of the 480 degrees. Unit quaternions know "
-                "nothing of the full turn: at the right the strings are wound by 120 degrees."
+                "the strings wind around each other, by 441 degrees from end to end, for their ends are not "
+                "quite at the probes. Unit quaternions know nothing of the full turn, and of the 480 degrees "
+                "are left 120: at the right the strings are wound by 111."
             ),
             params={"example": "strings"},
         ),
@@ -140,7 +141,11 @@ def probe(
     ] = "straight",
     origin: Annotated[
         Literal["centre", "world"],
-        Param("what motions are expressed about: the probes' centres, or as printed the origin of the world"),
+        Param(
+            "what motions are expressed about: the probes' centres, or as printed the origin of the world",
+            # An axis through the origin is the same for both.
+            only=("example", "duck", "cactus", "bend", "strings", "octopus", "particles"),
+        ),
     ] = "centre",
     steps: Annotated[
         int, Param("stages that are shown", low=2, high=7, only=("example", "bend", "strings"))
