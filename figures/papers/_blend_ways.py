@@ -24,8 +24,8 @@ NAMES = {
     "linear": "linear",
 }
 _BESIDE = ("phi_so", "alexa", "polar_quaternion")
-_ABOVE: Box = (36.0, 494.0, 1128.0, 366.0)
-_BELOW: Box = (36.0, 64.0, 1128.0, 366.0)
+_LEFT, _WIDE = 36.0, 1128.0
+_ABOVE, _BELOW, _TALL, _LOW = 494.0, 64.0, 366.0, 330.0
 # The lower titles' base line, and the legend's.
 _SECOND, _LAST = 442.0, 30.0
 # So many shapes stand in the upper row at most.
@@ -51,13 +51,16 @@ def drawing(family: Family, way: str, weights: Array) -> Drawing:
     """Return rest and targets, and their blends by a way and by those that it is compared with."""
     shown = [_shown(family, name, weights) for name in _row(way)]
     many = min(len(family) + 1, _MOST)
-    above, below = mesh_page.grid(1, many, _ABOVE), mesh_page.grid(1, len(shown), _BELOW)
+    # The thorn's boxes are taller: of them only a tip comes near to the titles.
+    tall = _TALL if _has_tip(family) else _LOW
+    above = mesh_page.grid(1, many, (_LEFT, _ABOVE, _WIDE, tall))
+    below = mesh_page.grid(1, len(shown), (_LEFT, _BELOW, _WIDE, tall))
     shapes = [family.rest, *family.targets[: many - 1]]
     upright = [family.upright(X) for X in shapes]
     if _has_tip(family):
         upright.append(family.upright(np.array([[0.0, 0.0, _UPPER + _PLUMB]])))
     narrow = min(above[0][2], below[0][2])
-    camera = mesh_page.together(upright, family.direction, (0.0, 0.0, narrow, _ABOVE[3]), 1.06)
+    camera = mesh_page.together(upright, family.direction, (0.0, 0.0, narrow, tall), 1.06)
     colours = [look.REST, *map(look.target, range(many - 1))]
     views = [
         View(tuple(look.creature(family, X, camera, *own)), camera, box)
@@ -70,7 +73,7 @@ def drawing(family: Family, way: str, weights: Array) -> Drawing:
         scale = "" if own is camera else rf" (${camera.height / own.height:.2g} : 1$)"
         heads.append(look.line(NAMES[one.way] + scale, box[0] + box[2] / 2.0, _SECOND, style.TITLE_TEXT))
     names = ["rest", *_named(family, many - 1)]
-    titles = [*mesh_page.titles(above, names), *heads, _legend(family, weights, many - 1)]
+    titles = [*mesh_page.titles(above, names), *heads, _legend(family, weights, many - 1, shown)]
     mesh = shown[0].blended
     if mesh is None:
         raise ValueError(f"weights must be such that {way} has a blend; got {shown[0].trouble}")
@@ -214,7 +217,7 @@ def _short(name: str) -> str:
     return text.replace("\\", "/").replace("$", r"\$")
 
 
-def _legend(family: Family, weights: Array, above: int) -> Label:
+def _legend(family: Family, weights: Array, above: int, shown: list[Shown]) -> Label:
     if len(weights) <= 4:
         names = ", ".join(f"w_{k + 1}" for k in range(len(weights)))
         text = f"below: blended with ${names} = {look.numbers(weights)}$"
@@ -224,4 +227,6 @@ def _legend(family: Family, weights: Array, above: int) -> Label:
         text = f"below: blended with {len(weights)} weights of sum ${weights.sum():.2f}$"
     if above < len(family):
         text += f"; {len(family) - above} more targets are not drawn"
+    if lacking := max(int(one.blended.fallback.sum()) for one in shown if one.blended):
+        text += f"; hatched: {lacking} faces without a logarithm"
     return look.line(text, 600.0, _LAST)
