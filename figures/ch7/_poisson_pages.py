@@ -185,7 +185,7 @@ def compare(case: Case, kind: str, ways: tuple[str, str], t: float) -> Drawing:
         at = (box[0] + box[2] / 2.0, box[1] - 44.0, 0.0)
         words.append(Label(line, at, _tone(m), style.SMALL_TEXT, anchor="cn"))
     if case.name == "arm":
-        words += mesh_page.captions(boxes[:1], ["grey: pinned; red: the handle"], 22.0)
+        words += mesh_page.captions(boxes[:1], ["grey: pinned; red tip: the handle"], 22.0)
     views.append(View((*words, *_plot(found))))
     numbers = {m.way: m.numbers for m in found}
     result = found[-1].result
@@ -266,7 +266,7 @@ def table(cases: Sequence[Case], asked: Sequence[float | None], t: float) -> Dra
         for m, box in zip(row, places, strict=True):
             views.append(View(tuple(_body(m.case, m.result.vertices, camera, 1.0)), camera, box))
             words += _column(m, box, -1.0 if (degrees or 0.0) < 0.0 else 1.0)
-        words += _names(places[0], degrees, t)
+        words += _names(places[0], degrees)
     for box, (_, _, name) in zip(boxes[0], METHODS, strict=True):
         for k, line in enumerate(name):
             at = (box[0] + 0.5 * box[2], 846.0 - 38.0 * k, 0.0)
@@ -286,11 +286,11 @@ def table(cases: Sequence[Case], asked: Sequence[float | None], t: float) -> Dra
     )
 
 
-def _names(box: Box, degrees: float | None, t: float) -> list[Record]:
+def _names(box: Box, degrees: float | None) -> list[Record]:
     """What was asked for beside a row of pictures, and the names of the lines below it."""
     records: list[Record] = []
     right, middle = _COLUMNS - 14.0, box[1] + 0.5 * box[3]
-    shown = () if degrees is None else ("asked for:", rf"${number(t * degrees, 0)}^{{\circ}}$")
+    shown = () if degrees is None else ("asked for:", rf"${number(degrees, 0)}^{{\circ}}$")
     for k, line in enumerate(shown):
         at = (right, middle + 20.0 - 40.0 * k, 0.0)
         records.append(Label(line, at, style.INK, style.TEXT, anchor="rn"))

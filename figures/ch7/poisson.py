@@ -109,13 +109,15 @@ def poisson(
     def looked(found: examples.Case) -> examples.Case:
         return replace(found, look=replace(found.look.turned(around, above), y_up=up == "y"))
 
-    match example:
-        case "handles":
-            return pages.handles(looked(given or examples.by_head()), weights, way, t)
-        case "octopus":
-            shown = looked(given or examples.by_arm(turn, motion))
-            return pages.compare(shown, weights, (beside, way), t)
+    if example == "handles":
+        return pages.handles(looked(given or examples.by_head()), weights, way, t)
+    if given is not None and example == "octopus":
+        return pages.compare(looked(given), weights, (beside, way), t)
     if given is not None:
         return pages.table([looked(given)], [None], t)
-    shown = [looked(examples.by_arm(degrees, motion)) for degrees in (first, turn)]
-    return pages.table(shown, [first, turn], t)
+    # Rolled up less the tip is elsewhere, and not on a straight line to where it goes.
+    asked = [t * turn] if example == "octopus" else [t * first, t * turn]
+    arms = [looked(examples.by_arm(degrees, motion)) for degrees in asked]
+    if example == "octopus":
+        return pages.compare(arms[0], weights, (beside, way), 1.0)
+    return pages.table(arms, asked, 1.0)

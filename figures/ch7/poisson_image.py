@@ -131,7 +131,12 @@ def _panel(box: Box, levels: Array, name: str, base: float, mask: Array | None =
         _text(name, box, base, style.TITLE_TEXT),
     ]
     if mask is not None:
-        records.insert(1, scene.Lines(_outline(mask, place), style.MARK, style.EDGE))
+        edge = _outline(mask, place)
+        # Pale at its sides, so that it is seen without colour too.
+        records[1:1] = [
+            scene.Lines(edge, style.BONE, 2.4 * style.EDGE, 0.9),
+            scene.Lines(edge, style.MARK, style.EDGE),
+        ]
     return records
 
 
