@@ -37,6 +37,9 @@ APART = np.deg2rad(90.0)
 _SAME = 1e-6
 """Radians by which two choices for one rotation may differ and be the same."""
 
+_EVEN = 9
+"""Decimals of angles that are compared: what is equal but for rounding goes by index, on every machine."""
+
 
 @dataclass(frozen=True, eq=False)
 class Lift:
@@ -245,7 +248,8 @@ def _seeds(
 
 def _smallest(principal: Array, component: Index) -> Index:
     """The node of each component that turns the least; of equals the first."""
-    order = np.lexsort((np.arange(len(component)), np.linalg.norm(principal, axis=-1), component))
+    angle = np.round(np.linalg.norm(principal, axis=-1), _EVEN)
+    order = np.lexsort((np.arange(len(component)), angle, component))
     return order[np.unique(component[order], return_index=True)[1]]
 
 
@@ -287,7 +291,8 @@ def _tree(count: int, ends: Index, apart: Array, seeds: Index) -> tuple[Index, l
 
     Neighbours that differ by more than is promised are taken only where no other way leads on.
     """
-    near = apart <= APART
+    apart = np.round(apart, _EVEN)
+    near = apart <= np.round(APART, _EVEN)
     _, island = topology.components(count, ends[near])
     start, there = _rows(count, ends[near])
     parent = np.full(count, -2)

@@ -79,11 +79,12 @@ def lengths(where: str, r: ArrayLike) -> Array:
     return a
 
 
-def positive(where: str, name: str, x: ArrayLike, k: int) -> Array:
-    """Return one positive number, or one for each probe."""
+def positive(where: str, name: str, x: ArrayLike, k: int | None = None) -> Array:
+    """Return one positive number, or one for each of k probes if there may be so many."""
     a = checks.array(where, name, x, ())
     if a.shape not in ((), (k,)):
-        checks.fail(where, name, f"one number or {k} of them, one for each probe", f"shape {a.shape}", None)
+        must = "one number" if k is None else f"one number or {k} of them, one for each probe"
+        checks.fail(where, name, must, f"shape {a.shape}", None)
     if not np.all(a > 0.0):
         index = checks.first(~(a > 0.0))
         checks.fail(where, name, "above 0", f"{a[index]}", index or None)

@@ -89,7 +89,7 @@ def softmax(w: ArrayLike, sharpness: float = 1.0) -> Array:
         If w has another shape, or is not finite, or the sharpness is not above 0.
     """
     a = matrix("weights.softmax", "w", w)
-    s = float(positive("weights.softmax", "sharpness", sharpness, 0))
+    s = float(positive("weights.softmax", "sharpness", sharpness))
     e = s * (a - np.max(a, axis=1, keepdims=True))
     with np.errstate(under="ignore"):
         np.exp(e, out=e)

@@ -121,7 +121,7 @@ def inverse_distance(distances: ArrayLike, power: float = 2.0) -> Array:
         If a distance is negative or nan, the power is not above 0, or a weight overflows.
     """
     where = "weights.inverse_distance"
-    r, p = lengths(where, distances), float(positive(where, "power", power, 0))
+    r, p = lengths(where, distances), float(positive(where, "power", power))
     largest = np.max(r, initial=0.0, where=np.isfinite(r)) or 1.0
     with np.errstate(over="ignore", divide="ignore", under="ignore"):
         w = np.maximum(r, NEAREST * largest)
@@ -159,7 +159,7 @@ def cutoff(distances: ArrayLike, reach: ArrayLike, power: float = 2.0) -> Array:
     """
     where = "weights.cutoff"
     r = lengths(where, distances)
-    d, p = positive(where, "reach", reach, r.shape[1]), float(positive(where, "power", power, 0))
+    d, p = positive(where, "reach", reach, r.shape[1]), float(positive(where, "power", power))
     w = r / -d
     w += 1.0
     np.maximum(w, 0.0, out=w)

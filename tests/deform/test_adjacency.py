@@ -173,6 +173,21 @@ def test_a_step_of_more_than_90_degrees_is_gone_round_where_possible():
     assert over.beyond.tolist() == [False, True]
 
 
+def test_rounding_decides_neither_seeds_nor_ways():
+    """Quarter turns and equal rotations, in axes that make other last bits of them."""
+    quarter = so3.rotation("x", 0.5 * np.pi)
+    R = np.stack([so3.rotation("z", 0.3), quarter, quarter, so3.rotation("x", 0.3), so3.rotation("z", 0.3)])
+    R[2] = R[1] @ so3.rotation("y", 0.5 * np.pi)
+    pairs = [[0, 1], [1, 2], [2, 3], [3, 4], [4, 0], [0, 2], [1, 3]]
+    wanted = adjacency.consistent(R, pairs)
+    for Q in Rotation.random(40, random_state=3).as_matrix():
+        lift = adjacency.consistent(Q @ R @ Q.T, pairs)
+        assert lift.seeds.tolist() == wanted.seeds.tolist() == [0]
+        assert lift.parent.tolist() == wanted.parent.tolist()
+        assert lift.beyond.tolist() == wanted.beyond.tolist()
+        np.testing.assert_allclose(lift.vectors, wanted.vectors @ Q.T, atol=1e-12)
+
+
 def test_rotations_at_random_end():
     R = Rotation.random(3000, random_state=1).as_matrix()
     lift = adjacency.consistent(R, grid(300, 10))

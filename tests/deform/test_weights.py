@@ -116,6 +116,10 @@ def test_separate_weights():
             lambda: weights.inverse_distance([[1.0]], np.nan),
             r"weights\.inverse_distance: power must be finite",
         ),
+        (
+            lambda: weights.inverse_distance([[1.0]], []),  # pyright: ignore
+            r"weights\.inverse_distance: power must be one number; got shape \(0,\)",
+        ),
         (lambda: weights.inverse_distance([[1e-9, 1.0]], 40.0), r"weights\.inverse_distance: .* overflow"),
         (lambda: weights.cutoff([[1.0]], 0.0), r"weights\.cutoff: reach must be above 0; got 0\.0"),
         (lambda: weights.cutoff([[1.0]], [1.0, 2.0]), r"weights\.cutoff: reach must be one number or 1"),
