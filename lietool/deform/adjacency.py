@@ -30,13 +30,10 @@ Mask = NDArray[np.bool_]
 FULL = 2.0 * np.pi
 PROMISED = np.deg2rad(300.0)
 """The largest rotation for which the choice is promised; as near to any other |x| = 2 n pi none is."""
-
 APART = np.deg2rad(90.0)
 """How far neighbours may differ for that."""
-
 _SAME = 1e-6
 """Radians by which two choices for one rotation may differ and be the same."""
-
 _EVEN = 9
 """Decimals of angles that are compared: what is equal but for rounding goes by index, on every machine."""
 
@@ -139,8 +136,7 @@ def consistent(
     ends = _pairs(where, pairs, len(R))
     count, component = topology.components(len(R), ends)
     begin, begun = _seeds(where, seeds, near, R, principal)
-    empty = np.setdiff1d(np.arange(count), component[begin])
-    found = _smallest(principal, component)[empty]
+    found = _smallest(principal, component)[np.setdiff1d(np.arange(count), component[begin])]
     begin, begun = np.concatenate([begin, found]), np.concatenate([begun, principal[found]])
     relative = np.swapaxes(R[ends[:, 0]], -1, -2) @ R[ends[:, 1]]
     apart = np.linalg.norm(so3.log(relative, check=False), axis=-1)
@@ -210,7 +206,7 @@ def face_pairs(F: ArrayLike) -> Index:
 
 def _pairs(where: str, pairs: ArrayLike, count: int) -> Index:
     p = np.asarray(pairs)
-    if p.size == 0:
+    if not p.size:
         return np.zeros((0, 2), np.intp)
     if p.ndim != 2 or p.shape[1] != 2 or p.dtype.kind not in "iu":
         checks.fail(where, "pairs", "whole numbers of shape (p, 2)", f"{p.dtype} of shape {p.shape}", None)
@@ -229,7 +225,7 @@ def _seeds(
         if near is not None:
             checks.fail(where, "near", "given with seeds", "no seeds", None)
         return np.zeros(0, np.intp), np.zeros((0, 3))
-    begin = np.asarray(seeds) if len(seeds) else np.zeros(0, np.intp)
+    begin = np.asarray(seeds, None if len(seeds) else np.intp)
     if begin.ndim != 1 or begin.dtype.kind not in "iu":
         checks.fail(where, "seeds", "whole numbers of shape (s,)", f"{begin.dtype} {begin.shape}", None)
     if len(begin) and not 0 <= begin.min() <= begin.max() < len(R):

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lietool.deform import adjacency, cage_checks, cage_frames, cage_weights, move, orientation, ways
+from lietool.deform import adjacency, cage_checks, cage_frames, cage_weights, move, orientation, turns, ways
 from lietool.deform.weights import Weights
 from lietool.lie import matrix_checks, polar
 from lietool.mesh import topology
@@ -33,9 +33,6 @@ Mask = NDArray[np.bool_]
 
 Weigh = Callable[[Array, Array, cage_frames.Elements], Array]
 Lift = Callable[[Array, Index], adjacency.Lift]
-
-LARGE_STEP = 0.5 * np.pi
-"""Radians: a longer step from one pose to the next is reported."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -301,6 +298,6 @@ def follow(prepared: Prepared, poses: Iterable[ArrayLike], policy: orientation.P
         now = pose(prepared, V, ways.PHI_SO, policy, on)
         if followed and now.lift is not None and followed[-1].lift is not None:
             angle = np.linalg.norm(now.lift.vectors - followed[-1].lift.vectors, axis=-1)
-            steps += [Step(frame, int(i), float(angle[i])) for i in np.flatnonzero(angle > LARGE_STEP)]
+            steps += [Step(frame, int(i), float(angle[i])) for i in np.flatnonzero(angle > turns.LARGE_STEP)]
         followed.append(now)
     return Track(tuple(followed), tuple(steps))

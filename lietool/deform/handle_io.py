@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lietool.deform import probe_io, probe_motion
-from lietool.deform.probe_values import Table, shown
+from lietool.deform.probe_values import Table, named, shown
 from lietool.mesh.files import Place
 from lietool.mesh.surface import Mesh
 
@@ -39,7 +39,6 @@ Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
 _PLACES = ("vertices", "ball", "box", "attribute")
-_COLOURS = ("red", "green", "blue", "alpha")
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,14 +99,7 @@ def read(path: str | Path, mesh: Mesh) -> Handles:
     owned = np.zeros(len(mesh.vertices), np.intp)
     names: list[str] = []
     rows = []
-    for i, value in enumerate(top.tables("handle", "a file of handles, with at least one [[handle]]")):
-        label = f"handle {i + 1}"
-        entry = top.table("handle", value, label)
-        name = entry.data.get("name", str(i + 1))
-        if not isinstance(name, str) or not name or name in names:
-            entry.fail("name", "a word, another than those before", shown(name))
-        names.append(name)
-        entry = Table(top.place, label if name == str(i + 1) else f"{label} ({name})", entry.data)
+    for i, entry in enumerate(named(top, "handle", "a file of handles, with at least one [[handle]]", names)):
         entry.only(("name", "centre", "motion", *_PLACES))
         chosen = _chosen(entry, mesh)
         if np.any(owned[chosen]):
@@ -173,8 +165,7 @@ def _pair(
 
 def _painted(part: Table, mesh: Mesh) -> Mask:
     part.only(("name", "above"))
-    colours = np.zeros((len(mesh.vertices), 0)) if mesh.colours is None else mesh.colours
-    found = dict(zip(_COLOURS, colours.T, strict=False)) | mesh.attributes
+    found = mesh.numbers
     name = part.data.get("name")
     if not isinstance(name, str) or name not in found:
         part.fail(

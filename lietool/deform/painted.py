@@ -9,11 +9,9 @@ from numpy.typing import NDArray
 from lietool.lie import checks
 from lietool.mesh import surface_io
 from lietool.mesh.files import Place, read_text
-from lietool.mesh.surface import Mesh
+from lietool.mesh.surface import CHANNELS, Mesh
 
 Array = NDArray[np.float64]
-
-_COLOURS = ("red", "green", "blue", "alpha")
 
 
 def read(path: str | Path, count: int, names: Sequence[str] = ()) -> Array:
@@ -85,9 +83,8 @@ def _is_finite(word: str) -> bool:
 
 
 def _named(place: Place, mesh: Mesh, names: Sequence[str]) -> Array:
-    colours = np.zeros((len(mesh.vertices), 0)) if mesh.colours is None else mesh.colours
-    found = dict(zip(_COLOURS, colours.T, strict=False)) | mesh.attributes
-    chosen = list(names) or list(mesh.attributes) or [k for k in _COLOURS[:3] if k in found]
+    found = mesh.numbers
+    chosen = list(names) or list(mesh.attributes) or [k for k in CHANNELS[:3] if k in found]
     if not chosen:
         place.fail("a mesh with numbers or colours of vertices", "none of them")
     for name in chosen:

@@ -18,14 +18,11 @@ from typing import NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lietool.deform import ways
-from lietool.lie import affine, checks
+from lietool.deform import turns, ways
+from lietool.lie import affine, checks, matrix_checks
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
-
-FAR = 0.5 * np.pi
-"""A step of the rotation vector that is longer, in radians, may be a continuation of the wrong branch."""
 
 CLOSE = 1e-9
 """Keys nearer to each other in time, as a part of the whole, count as one too many."""
@@ -67,7 +64,7 @@ class Keys:
         if self.way.name not in _NEAR:
             return np.zeros(0, np.intp)
         step = np.linalg.norm(np.diff(self.params[:, :3], axis=0), axis=1)
-        return np.flatnonzero(step > FAR) + 1
+        return np.flatnonzero(step > turns.LARGE_STEP) + 1
 
 
 def principal(
@@ -187,14 +184,13 @@ def relative(rest: ArrayLike, frames: ArrayLike) -> Array:
     Raises
     ------
     ValueError
-        If a number is not finite or the rest is singular.
+        If a number is not finite, a matrix not affine, or the rest is singular.
     """
-    a = checks.array("pose_keys.relative", "rest", rest, (4, 4))
-    b = checks.array("pose_keys.relative", "frames", frames, (4, 4))
-    checks.broadcast("pose_keys.relative", rest=(a, 2), frames=(b, 2))
-    det = np.atleast_1d(np.linalg.det(a))
-    if not np.all(np.abs(det) > 0.0):
-        checks.fail("pose_keys.relative", "rest", "invertible", "det = 0", checks.first(det == 0.0))
+    where = "pose_keys.relative"
+    a = matrix_checks.affine(where, "rest", checks.array(where, "rest", rest, (4, 4)))
+    b = matrix_checks.affine(where, "frames", checks.array(where, "frames", frames, (4, 4)))
+    checks.broadcast(where, rest=(a, 2), frames=(b, 2))
+    matrix_checks.invertible(where, "rest", a)
     return b @ np.linalg.inv(a)
 
 

@@ -23,9 +23,6 @@ from lietool.lie import checks, matrix_checks, so3
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-LARGE_STEP = 0.5 * np.pi
-"""Radians: a longer step from one pose to the next is reported."""
-
 
 @dataclass(frozen=True)
 class Prepared:
@@ -91,11 +88,7 @@ def prepare(
     """
     where = "probe.prepare"
     r = _frames(where, "rest", rest)
-    d = np.linalg.svd(r[:, :3, :3], compute_uv=False)
-    flat = ~(d[:, 2] > matrix_checks.UNDECIDED * d[:, 0])
-    if np.any(flat):
-        k = checks.first(flat)
-        checks.fail(where, "rest", "invertible frames", f"singular values {np.round(d[k], 6)}", k)
+    matrix_checks.invertible(where, "rest", r)
     inverse = np.empty_like(r)
     inverse[...] = np.linalg.inv(r)
     return Prepared(inverse, move.prepare(points, r[:, :3, 3] if origin is None else origin, weights))
@@ -282,7 +275,7 @@ def follow(
         x[told[i]] = turns_of.wound(principal[told[i]], n[i][told[i]])
         angles = np.linalg.norm(x - before, axis=-1)
         if i:
-            steps += [Step(i, int(j), float(angles[j])) for j in np.flatnonzero(angles > LARGE_STEP)]
+            steps += [Step(i, int(j), float(angles[j])) for j in np.flatnonzero(angles > turns_of.LARGE_STEP)]
         encoded.append(move.encode(ways.PHI_SO, B, x))
         before = x
     return Track(tuple(encoded), tuple(steps), oriented.replaced)

@@ -54,7 +54,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lietool.deform import probe_motion
-from lietool.deform.probe_values import Table, shown
+from lietool.deform.probe_values import Table, named, shown
 from lietool.mesh.files import BROKEN, Place, read_text
 
 Array = NDArray[np.float64]
@@ -227,16 +227,7 @@ def _probes(top: Table) -> Probes:
     top.only(("probe",))
     names: list[str] = []
     rows = []
-    for i, value in enumerate(top.tables("probe", "a file of probes, with at least one [[probe]]")):
-        label = f"probe {i + 1}"
-        entry = top.table(label, value, label)
-        name = entry.data.get("name", str(i + 1))
-        if not isinstance(name, str) or not name:
-            entry.fail("name", "a word", shown(name))
-        if name in names:
-            entry.fail("name", "another than those before", shown(name))
-        names.append(name)
-        entry = Table(top.place, label if name == str(i + 1) else f"{label} ({name})", entry.data)
+    for entry in named(top, "probe", "a file of probes, with at least one [[probe]]", names):
         rest = _rest(entry)
         motion = entry.table("current", entry.data.get("current", {}), f"{entry.label}, current")
         rows.append((rest, *probe_motion.read(motion, rest)))

@@ -1,6 +1,6 @@
 """Tables of a file of probes: the values in them, and the line that says which is wrong."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
@@ -80,6 +80,20 @@ class Table:
         if not np.array_equal(a[3], [0.0, 0.0, 0.0, 1.0]):
             self.fail(key, "an affine matrix, last row 0 0 0 1", f"last row {a[3].tolist()}")
         return a
+
+
+def named(top: Table, kind: str, wanted: str, names: list[str]) -> Iterator[Table]:
+    """Yield the probes or handles of a file, and append the name of each, its number where it has none."""
+    for i, value in enumerate(top.tables(kind, wanted)):
+        label = f"{kind} {i + 1}"
+        entry = top.table(label, value, label)
+        name = entry.data.get("name", str(i + 1))
+        if not isinstance(name, str) or not name:
+            entry.fail("name", "a word", shown(name))
+        if name in names:
+            entry.fail("name", "another than those before", shown(name))
+        names.append(name)
+        yield Table(top.place, label if name == str(i + 1) else f"{label} ({name})", entry.data)
 
 
 def shown(value: object) -> str:

@@ -7,6 +7,9 @@ from lietool.lie import checks
 
 Array = NDArray[np.float64]
 
+LARGE_STEP = 0.5 * np.pi
+"""Radians: a longer step of a rotation vector, from one pose or key to the next, is reported as in doubt."""
+
 _STILL = 1e-9
 """Radians: a rotation by less counts as none, which whole turns about any axis go with."""
 

@@ -82,6 +82,17 @@ def affine(where: str, name: str, A: ArrayLike, check: bool = True) -> NDArray[n
     return a
 
 
+def invertible(where: str, name: str, A: NDArray[np.float64]) -> None:
+    """Refuse homogeneous matrices whose linear parts are singular, or so nearly that rounding may be why."""
+    n = A.shape[-1] - 1
+    d = np.linalg.svd(A[..., :n, :n], compute_uv=False)
+    flat = ~(d[..., -1] > UNDECIDED * d[..., 0])
+    if np.any(flat):
+        index = checks.first(flat)
+        values = ", ".join(f"{x:.3g}" for x in d[index])
+        checks.fail(where, name, "invertible", f"singular values {values}", index)
+
+
 def parameters(where: str, name: str, p: ArrayLike, check: bool = True) -> tuple[NDArray[np.float64], int]:
     """Return parameters of affine transformations as a float64 array, and the dimension that they are for."""
     a = checks.array(where, name, p, (), check=False)

@@ -10,6 +10,9 @@ from lietool.mesh import laplacian, topology
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
+CHANNELS = ("red", "green", "blue", "alpha")
+"""The names of colours among the numbers of vertices."""
+
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
@@ -37,6 +40,12 @@ class Mesh:
     uv_faces: Index | None = None
     colours: Array | None = None
     attributes: dict[str, Array] = field(default_factory=dict)
+
+    @property
+    def numbers(self) -> dict[str, Array]:
+        """All numbers of the vertices by name: red, green, blue, alpha, as far as there are, then others."""
+        colours = np.zeros((len(self.vertices), 0)) if self.colours is None else self.colours
+        return dict(zip(CHANNELS, colours.T, strict=False)) | self.attributes
 
     def moved(self, vertices: ArrayLike) -> "Mesh":
         """Return the mesh with its vertices (n, 3) elsewhere, and all else as it was.

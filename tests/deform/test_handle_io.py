@@ -100,7 +100,7 @@ MISTAKES = [
         "name must be numbers of .* red, green, blue, held; got 'x'",
     ),
     ({"handle": [TOP, TOP]}, "handle 2 must be of vertices of its own; got vertex 3, which is handle 1's"),
-    ({"handle": [{"name": "a", **TOP}, {"name": "a", "vertices": [0]}]}, "name must be a word, another than"),
+    ({"handle": [{"name": "a", **TOP}, {"name": "a", "vertices": [0]}]}, "name must be another than"),
     (handle(name=""), "handle 1, name must be a word"),
     (handle(spin=3), r"must be a table of name, centre, motion, .*; got the key 'spin'"),
     (handle(motion={"degrees": 3}), "axis must be given beside degrees"),

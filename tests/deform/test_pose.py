@@ -255,7 +255,11 @@ NO_LOG = np.stack([np.eye(4), np.diag([-1.0, -2.0, 1.0, 1.0]), np.eye(4), np.dia
         ),
         (lambda: pose.evaluate(pose.straight(pose.principal(ways.PHI_SO, GOOD)), np.nan), "t must be finite"),
         (lambda: pose.measure(pose.straight(pose.principal(ways.PHI_SO, GOOD)), 0), "steps must be a whole"),
-        (lambda: pose.relative(np.zeros((4, 4)), GOOD), "rest must be invertible"),
+        (lambda: pose.relative(np.zeros((4, 4)), GOOD), "rest must be an affine transformation"),
+        (
+            lambda: pose.relative(np.diag([1.0, 1.0, 1e-300, 1.0]), GOOD),
+            "rest must be invertible; got singular values 1, 1, 1e-300",
+        ),
     ],
 )
 def test_bad_input_is_refused_by_name(call, message):

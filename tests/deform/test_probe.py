@@ -384,7 +384,7 @@ def changed(a: np.ndarray, index, value) -> np.ndarray:
         ({"rest": REST[:0], "w": W[:, :0]}, r"probe\.prepare: rest must be an array of shape \(k, 4, 4\)"),
         (
             {"rest": REST @ np.diag([1.0, 1, 0, 1])},
-            r"probe\.prepare: rest must be invertible frames; .* at index \(0,\)",
+            r"probe\.prepare: rest must be invertible; got singular values .* at index \(0,\)",
         ),
         ({"rest": np.ones((K, 4, 4))}, r"probe\.prepare: rest must be an affine transformation"),
         (

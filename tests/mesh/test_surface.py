@@ -81,6 +81,15 @@ def test_welding_takes_the_first_at_each_place():
     assert len(first) == len(np.unique(V, axis=0))
 
 
+def test_all_numbers_of_vertices_by_name():
+    V = np.eye(3)
+    painted = {"held": np.arange(3.0)}
+    mesh = Mesh(V, np.array([[0, 1, 2]]), colours=V, attributes=painted)
+    assert list(mesh.numbers) == ["red", "green", "blue", "held"]
+    np.testing.assert_array_equal(mesh.numbers["green"], [0.0, 1.0, 0.0])
+    assert list(Mesh(V, mesh.faces).numbers) == []
+
+
 def test_a_moved_mesh_keeps_the_rest():
     mesh = Mesh(CUBE, SIDES, attributes={"arm": np.arange(8.0)})
     moved = mesh.moved(2 * CUBE)
