@@ -15,7 +15,8 @@ _MOST_DASHES = 20000
 # Every OpenGL has textures of this size.
 _LARGEST_IMAGE = 4096
 
-MATERIALS = {"flat": 0.0, "matte": 1.0, "glass": 2.0, "soft": 3.0}
+# A shadow is drawn as what is flat, but before all else.
+MATERIALS = {"flat": 0.0, "matte": 1.0, "glass": 2.0, "soft": 3.0, "shadow": 0.0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,6 +114,9 @@ def _(record: Surface, lens: Lens) -> list[Batch]:
     depth = lens.depth(corners.mean(axis=1))
     if record.material == "glass":
         return _walls(data, corners, normals, depth, lens)
+    if record.material == "shadow":
+        # Under everything; in its order by depth it would part each run of lines into hundreds.
+        depth = np.full(len(depth), np.finfo(np.float32).max)
     return [Batch("surface", data, depth, bool(color[..., 3].min() >= 1.0))]
 
 

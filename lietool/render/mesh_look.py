@@ -149,7 +149,7 @@ def eyes(
     for k in places:
         center = V[k] - 0.3 * radius * N[k]
         toward = mesh_lines.unit(N[k] + (0.0 if look is None else 0.8 * mesh_lines.unit(look)))
-        for part, shift, color in ((1.0, 0.0, style.PAPER), (0.62, 0.47, style.INK)):
+        for part, shift, color in ((1.0, 0.0, style.EYE_WHITE), (0.62, 0.47, style.PUPIL)):
             ball, faces, normals = solids.sphere(part * radius, center + shift * radius * toward, 20)
             records.append(Surface(ball, faces, color, normals))
     return records

@@ -48,7 +48,7 @@ def shadow(V: ArrayLike, F: ArrayLike, ground: float | None = None, strength: fl
     dark = strength * (1.0 - lit).ravel()
     faces = solids.grid_faces(_CELLS, _CELLS)
     faces = faces[dark[faces].max(axis=1) > 0.004]
-    return [Surface(points, faces, style.fade(style.INK, dark), material="flat")]
+    return [Surface(points, faces, style.fade(style.SHADOW, dark), material="shadow")]
 
 
 def _samples(V: Array, F: Index, cell: float) -> tuple[Array, Array, Array]:

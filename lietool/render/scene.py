@@ -23,7 +23,7 @@ from lietool.render.theme import Color
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Triangles: lit ("matte"), lit softly ("soft"), unlit ("flat"), or a convex shell of glass ("glass").
+    """Triangles: lit ("matte"), lit softly ("soft"), unlit ("flat", "shadow"), or a convex shell of "glass".
 
     Parameters
     ----------
@@ -33,7 +33,8 @@ class Surface:
         One colour, or one for each vertex.
     normals : array_like, shape (n, 3), optional
         Unit normals; without them every face is flat.
-    material : {"matte", "flat", "glass", "soft"}
+    material : {"matte", "flat", "glass", "soft", "shadow"}
+        A shadow is under all else that is not opaque.
     alpha : float
         Opacity; below 1 the triangles are sorted by depth.
     """
@@ -42,7 +43,7 @@ class Surface:
     faces: ArrayLike
     color: Color
     normals: ArrayLike | None = None
-    material: Literal["matte", "flat", "glass", "soft"] = "matte"
+    material: Literal["matte", "flat", "glass", "soft", "shadow"] = "matte"
     alpha: float = 1.0
 
 

@@ -58,6 +58,9 @@ GREYS = (
 
 GLASS = Tone("#b4cdea", "#5f86bd", "#c9d3de")
 GLASS_EDGE = Tone("#4a6a94", "#8fb0dc", "#33455c")
+SHADOW = Tone("#2b2f36", "#000000", "#000000")
+EYE_WHITE = Tone("#ffffff", "#f4f5f7", "#ffffff")
+PUPIL = Tone("#2b2f36", "#17191d", "#000000")
 BONE = Tone("#f3f1ea", "#6d7480", "#f3f1ea")
 SHELLS = (
     Tone("#7aa6d8", "#4f7fbd", "#6f9acd"),

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from lietool.render import mesh_lines, mesh_look, mesh_page, mesh_shading, solids, style
+from lietool.render.batches import Lens, batches
 from lietool.render.camera import Camera, project
 from lietool.render.scene import Arrow, Lines, Surface
-from lietool.render.theme import Mix
+from lietool.render.theme import BOOK, Mix
 
 CORNERS = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 CUBE = np.array(
@@ -249,3 +250,13 @@ class TestPage:
         records = mesh_page.color_bar((100.0, 50.0, 200.0, 18.0), (-1.0, 1.0), ((-1.0, "a"), (0.5, "b")), "w")
         marks = [r for r in records if isinstance(r, Lines)][1:]
         assert [np.asarray(r.points)[0, 0] for r in marks] == pytest.approx([100.0, 250.0])
+
+
+def test_a_shadow_is_drawn_before_all_else_that_is_not_opaque():
+    # In its order by depth it would part the lines into hundreds of pieces.
+    V, F = solids.sphere(1.0, (0.0, 0.0, 1.0), 24)[:2]
+    box = (0.0, 0.0, 900.0, 900.0)
+    lens = Lens(mesh_page.together([V], (-0.4, -0.8, 0.3), box), box, 1.0, BOOK)
+    (shadow,), (lines,) = (batches(*made, lens) for made in (mesh_look.shadow(V, F), mesh_look.wires(V, F)))
+    assert not shadow.opaque and shadow.depth.min() > lines.depth.max()
+    assert len(np.unique(shadow.depth)) == 1

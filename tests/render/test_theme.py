@@ -20,7 +20,7 @@ TEXTS = [
     n for n in COLORS if "_TEXT" in n or n in ("INK", "MUTED", "GLASS_EDGE", "MARK", "WRONG", "GREYS[0]")
 ]
 FAINT = ["PAPER", "RULE", "BAND", "BEFORE", "BETWEEN", "AFTER", "BONE", "GLASS", "GREYS[2]", "RAMP"]
-FAINT += ["SHELLS", "SHELL_FILLS"]
+FAINT += ["SHELLS", "SHELL_FILLS", "SHADOW", "EYE_WHITE", "PUPIL"]
 LINES = [n for n in COLORS if n not in FAINT and n.partition("[")[0] not in FAINT]
 # What is seen side by side, and is told apart by nothing but its colour.
 SIDE_BY_SIDE = {
@@ -32,6 +32,7 @@ SIDE_BY_SIDE = {
     "edges of stages": (style.BEFORE_EDGE, style.AFTER_EDGE),
     "routes": (style.ROUTE_1, style.ROUTE_2),
     "algebra, mark, group": (style.ALGEBRA, style.MARK, style.GROUP),
+    "eyes": (style.EYE_WHITE, style.PUPIL),
     "wrong, right": (style.WRONG, style.RIGHT),
     "ramp": style.RAMP,
     "solid": marks.LETTER,
