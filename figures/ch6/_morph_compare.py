@@ -53,7 +53,7 @@ def picture(strips: Sequence[Strip], t: float) -> scene.Picture:
     reached = [strip.way.measured.vertices.reshape(-1, 2) for strip in strips]
     every = np.concatenate([*reached, pair.source, pair.target])
     panels = [Panel(strip, None if both else e / most) for strip, e in zip(strips, error, strict=True)]
-    parts = _turned_back(panels) if both else _worst(panels, error[0])
+    parts = _turned_back(panels) if both else _worst(panels, max(error, key=np.max))
     width = (1200.0 - 3.0 * _SIDE) / 2.0
     records: list[scene.Record] = []
     for k, (panel, middle) in enumerate(zip(panels, parts.middles, strict=True)):
@@ -135,7 +135,7 @@ class Parts:
 
 
 def _worst(panels: Sequence[Panel], error: Array) -> Parts:
-    """The triangles that the first way has given up: of those with the largest errors, most hang together."""
+    """What one of the ways has given up: of its largest errors, those that hang together."""
     pair = panels[0].strip.way.pair
     worst = marks.clusters(pair, error >= np.quantile(error, _WORST))
     some = pair.faces[max(worst, key=len)]
@@ -144,8 +144,8 @@ def _worst(panels: Sequence[Panel], error: Array) -> Parts:
 
 
 def _turned_back(panels: Sequence[Panel]) -> Parts:
-    """Where in the second panel the way back passes farthest from the way there."""
-    panel = panels[1]
+    """Where the way back passes farthest from the way there, in the panel where it is farther off."""
+    panel = max(panels, key=lambda p: p.strip.way.asymmetry.max())
     points, _, _, rim = marks.skin(panel.strip.way.pair, panel.V)
     back = points if panel.back is None else marks.skin(panel.strip.way.pair, panel.back)[0]
     # From the outline of the one to that of the other: along it, nothing is seen.
@@ -240,7 +240,7 @@ def _plot(strips: Sequence[Strip], error: list[Array], most: float) -> list[scen
     # Named beside the largest triangles, but not over each other.
     apart = 34.0 - abs(heights[0] - heights[1])
     up = heights[0] >= heights[1]
-    for k in (1, 0):
+    for k in (0, 1):
         tone, type_, _ = _morph_plots.COLORS[k]
         keep = y[k] >= low
         if keep.any():

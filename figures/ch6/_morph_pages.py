@@ -64,7 +64,8 @@ def whole(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
     """Return the whole shape at time t."""
     way = _morph.way(pair, choice)
     found = way.at(np.array([t]))
-    places = _morph_stages.stage(pair, _extents(pair, choice))
+    reached = np.concatenate([_extents(pair, choice), way.measured.vertices.reshape(-1, 2)])
+    places = _morph_stages.stage(pair, reached)
     least, count = float(found.det.min()), int(found.flipped.sum())
     said = rf"{count} of {len(pair.faces)} flipped, least $\det B_i = {least:.2f}$"
     shown = _led(places.between, way, found)
@@ -84,7 +85,7 @@ def alone(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
 
 def beside(pair: Shape, choice: _morph.Choice, other: str, t: float) -> Drawing:
     """Return two ways at time t, and where each of them has its errors, or how far the way back is off."""
-    both = choice.energy == "symmetric"
+    both = "symmetric" in (choice.energy, other)
     strips = []
     for asked in (choice, _rows(choice, other)[1][0]):
         way = _morph.way(pair, asked)
@@ -126,10 +127,13 @@ def _mesh(V: np.ndarray, faces: np.ndarray) -> surface.Mesh:
 
 
 def _extents(pair: Shape, choice: _morph.Choice) -> np.ndarray:
-    """All that triangles reach at some times, torn apart or stitched together; shape (k, 2)."""
-    moments = np.linspace(0.0, 1.0, 9)
-    torn = [_morph.apart(pair, choice, float(t))[0].reshape(-1, 2) for t in moments]
-    return np.concatenate([*torn, _morph.way(pair, choice).measured.vertices.reshape(-1, 2)])
+    """All that triangles reach at some times, torn apart or stitched together; shape (k, 2).
+
+    What energy and constraints do has no part in it: torn apart and stitched, shapes have the same scale.
+    """
+    plain = replace(choice, energy="frobenius", constraint="line", weights="area")
+    torn = [_morph.apart(pair, choice, float(t))[0].reshape(-1, 2) for t in np.linspace(0.0, 1.0, 9)]
+    return np.concatenate([*torn, _morph.way(pair, plain).measured.vertices.reshape(-1, 2)])
 
 
 def frames(pair: Shape, choice: _morph.Choice, beside: str, steps: int, t: float) -> Drawing:
@@ -137,7 +141,7 @@ def frames(pair: Shape, choice: _morph.Choice, beside: str, steps: int, t: float
     before, after = _rows(choice, beside)
     choices = [*before, choice, *after]
     times = np.concatenate([np.linspace(0.0, t, steps + 1), np.linspace(t, 1.0, steps + 1)[1:]])
-    both = choice.energy == "symmetric"
+    both = "symmetric" in (choice.energy, beside)
     strips = []
     for asked in choices:
         way = _morph.way(pair, asked)

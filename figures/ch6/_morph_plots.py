@@ -106,12 +106,13 @@ def _values(plot: Plot, x: Array, t: float, axes: Axes, colors: Sequence[tuple])
         return []
     records: list[scene.Record] = []
     for value, (tone, type_, _) in zip(at, colors, strict=False):
-        # The lower one not below the axis.
-        up = value == max(at) or value < axes.ylim[0] + 0.35 * (axes.ylim[1] - axes.ylim[0])
+        up = value == max(at)
         spot = axes.at(t, value)
         records.append(scene.Points([spot], tone, 6.0, shaded=False))
-        offset = (-12.0 if t > 0.75 else 12.0, 8.0 if up else -8.0)
-        anchor = ("r" if t > 0.75 else "l") + ("b" if up else "t")
+        # The lower one at the other side, where its curve comes from.
+        left = t > 0.75 or (not up and t > 0.25)
+        offset = (-12.0 if left else 12.0, 8.0 if up or value < axes.ylim[0] + 0.1 * axes.ylim[1] else -4.0)
+        anchor = ("r" if left else "l") + ("b" if offset[1] > 0.0 else "t")
         records.append(
             scene.Label(
                 f"${value:.{3 if axes.ylim[1] < 0.1 else 2}f}$",

@@ -118,8 +118,7 @@ _WHOLE = ("stage", "global", "morph", "frames")
                 "stage": "global",
                 "constraint": "loci",
                 "winding": 0,
-                "energy": "point",
-                "beside": "frobenius",
+                "beside": "point",
             },
         ),
         "G6.2": Plate(
@@ -162,8 +161,8 @@ _WHOLE = ("stage", "global", "morph", "frames")
             equations=("6.2",),
             caption=(
                 "The bulge wanders, so that triangles which are large in P are small in Q. The way from the "
-                "target back to the source (purple, dashed) is another than the way there under E^F (right), "
-                "whose weights and maps are those of one direction. Under the symmetrised error (left) the "
+                "target back to the source (purple, dashed) is another than the way there under E^F (left), "
+                "whose weights and maps are those of one direction. Under the symmetrised error (right) the "
                 "two are the same. The plot: the largest distance of a vertex, over the size of P."
             ),
             params={
@@ -171,8 +170,7 @@ _WHOLE = ("stage", "global", "morph", "frames")
                 "stage": "global",
                 "constraint": "loci",
                 "winding": 0,
-                "energy": "symmetric",
-                "beside": "frobenius",
+                "beside": "symmetric",
             },
         ),
         "G6.5": Plate(
@@ -218,7 +216,7 @@ def global_interp(
         ),
     ] = "frobenius",
     beside: Annotated[
-        Literal["none", "frobenius", "similarity", "both-angles", "direction"],
+        Literal["none", "frobenius", "point", "similarity", "symmetric", "both-angles", "direction"],
         Param(
             "a second row or shape, by this energy with consistent angles; or E^F with the same angles "
             "above, and with consistent ones below; or E^R and a share of E^F, barycentre thrown, only the "
