@@ -7,13 +7,15 @@ apart than about twice the distance get cages of their own, all in one.  The res
 alone.
 """
 
+import hashlib
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lietool.deform import cage_checks, cage_view, nested_hull
-from lietool.mesh import topology
+from lietool.mesh import _kept, topology
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -29,6 +31,12 @@ _CELLS = 22
 
 _CLEAR = 0.12
 """Grid values nearer to the level than so much of a cell are moved away: no slivers at the grid's corners."""
+
+
+_MAKERS = tuple(
+    Path(module).with_name(f"{name}.py")
+    for module, name in ((__file__, "enclosing"), (__file__, "nested_hull"), (topology.__file__, "topology"))
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +100,40 @@ def cage(points: ArrayLike, F: ArrayLike | None = None, faces: int = FACES, marg
     number, _ = topology.components(len(G), topology.edges(where, G).inner)
     _enclosed(where, V, G, x, margin)
     return Cage(V * diagonal + 0.5 * (low + high), G, margin * diagonal, number)
+
+
+def kept(points: ArrayLike, F: ArrayLike | None = None, faces: int = FACES, margin: float = MARGIN) -> Cage:
+    """Return the cage of `cage`, kept in the cache folder: it takes seconds, and a user moves it many times.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+    F : array_like of int, shape (m, 3), optional
+    faces : int
+    margin : float
+
+    Returns
+    -------
+    cage : Cage
+        Its arrays are not writable.
+
+    Raises
+    ------
+    ValueError
+        As `cage`.
+    """
+    x, f = _arguments("enclosing.cage", points, F, faces, margin)
+    digest = hashlib.sha256(np.ascontiguousarray(x).tobytes())
+    digest.update(np.ascontiguousarray(f, np.int64).tobytes())
+
+    def make() -> _kept.Arrays:
+        made = cage(x, f, faces, margin)
+        return {"V": made.vertices, "F": made.faces, "rest": np.array([made.margin, made.components])}
+
+    name = f"{digest.hexdigest()[:24]}-{faces}-{float(margin)!r}"
+    arrays = _kept.kept(name, make, "cages", _MAKERS)
+    keep, number = arrays["rest"].tolist()
+    return Cage(arrays["V"], arrays["F"], keep, int(number))
 
 
 def _arguments(

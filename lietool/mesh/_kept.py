@@ -13,16 +13,25 @@ from lietool import atomic, cache
 Arrays = dict[str, np.ndarray]
 
 
-@lru_cache(maxsize=1)
-def _edition() -> str:
+SOLIDS = tuple(
+    Path(__file__).with_name(f"{name}.py")
+    for name in ("_creatures", "_even", "_flesh", "_implicit", "_sculptures", "solids", "topology")
+)
+"""What the solids are made by."""
+
+
+@lru_cache(maxsize=4)
+def _edition(makers: tuple[Path, ...]) -> str:
     """What the makers are made of: where a line of them changes, nothing kept before is used."""
     digest = hashlib.sha256()
-    for name in ("_creatures", "_even", "_flesh", "_implicit", "_sculptures", "solids", "topology"):
-        digest.update(Path(__file__).with_name(f"{name}.py").read_bytes())
+    for file in makers:
+        digest.update(file.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def kept(name: str, make: Callable[[], Arrays]) -> Arrays:
+def kept(
+    name: str, make: Callable[[], Arrays], part: str = "solids", makers: tuple[Path, ...] = SOLIDS
+) -> Arrays:
     """Return the arrays kept under a name, made if there are none; a cache that does not work is as none.
 
     Parameters
@@ -30,14 +39,18 @@ def kept(name: str, make: Callable[[], Arrays]) -> Arrays:
     name : str
         Says everything that the arrays depend on, in characters fit for a file's name.
     make : callable
+    part : str
+        Of the cache folder.
+    makers : tuple of Path
+        The files whose contents they depend on too.
 
     Returns
     -------
     dict of ndarray
         Not writable.
     """
-    folder = cache.folder("solids")
-    file = folder / f"{name}-{_edition()}.npz" if folder else None
+    folder = cache.folder(part)
+    file = folder / f"{name}-{_edition(makers)}.npz" if folder else None
     arrays = _read(file) if file else None
     if arrays is None:
         arrays = make()

@@ -1,0 +1,154 @@
+"""One element of a cage: its tetrahedron before and after, and the affine map that this defines."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lietool.deform import cage_frames
+from lietool.figure import Drawing
+from lietool.lie import polar, so3
+from lietool.render import brackets, marks, mesh_look, mesh_page, style
+from lietool.render.camera import Box, Camera
+from lietool.render.scene import Arrow, Label, Lines, Picture, Record, Surface, View
+
+from . import _cage_case as case_
+from . import _cage_look as cages
+from . import _cage_pages as pages
+from . import _probe_look as look_
+
+Array = NDArray[np.float64]
+
+_SMALL: tuple[Box, Box] = ((30.0, 466.0, 330.0, 340.0), (30.0, 84.0, 330.0, 340.0))
+_LARGE: tuple[Box, Box] = ((384.0, 478.0, 420.0, 316.0), (384.0, 96.0, 420.0, 316.0))
+_RIGHT = 830.0
+# The tetrahedron is seen from so much further round than the shape, so that its normal is not seen from its tip.
+_ROUND, _ABOVE = 52.0, 6.0
+# The frame that shows the map, over the longest side of the tetrahedron.
+_FRAME = 0.30
+_SIDES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
+_FACES = ((1, 0, 2), (0, 1, 3), (1, 2, 3), (2, 0, 3))
+_FOURTH = {
+    "faces": (r"$\mathbf{n}=\mathbf{e}_1\times\mathbf{e}_2$", r"$p_4=p_1+\mathbf{n}/\sqrt{|\mathbf{n}|}$"),
+    "edges": (r"$p_3$, $p_4$: from the middle along", r"the mean normal, and across"),
+    "corners": (r"$p_4$: from $p_1$ along", "the mean normal of its faces"),
+}
+
+
+def explain(
+    case: case_.Case, choice: case_.Choice, look: look_.Look, at: tuple[float, float, float], shown: int
+) -> Drawing:
+    """The cage, the tetrahedron of one element, and its map in numbers and as a frame."""
+    kind = case_.elements(case, choice)
+    now = case.posed(*at)
+    T = np.stack([cage_frames.tetrahedra(kind, V)[shown] for V in (case.vertices, now)])
+    A = cage_frames.maps(cage_frames.rest(kind, case.vertices), now)[shown]
+    moved = case_.move(case, choice, *at, shown)
+    views = _whole(case, look, kind, moved, shown)
+    aside = look.turned(_ROUND, _ABOVE)
+    frames = _frames(T[0], A)
+    extents = [look.upright(np.concatenate([t, _tips(f)])) for t, f in zip(T, frames, strict=True)]
+    seen = mesh_page.each(extents, aside.direction, _LARGE, 1.24)
+    for k in range(2):
+        records = _tetrahedron(look.upright(T[k]), kind.name, seen[k], moved=k == 1)
+        frame = look.upright(frames[k])
+        views.append(View(tuple(records), seen[k], _LARGE[k]))
+        # The frame stands inside of the tetrahedron.
+        views.append(View(tuple(mesh_look.probe(frame, 1.0, moved=k == 1)), seen[k], _LARGE[k]))
+    name = pages.NAMES[choice.by]
+    heads = [
+        Label(text, (x, mesh_page.TITLE, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
+        for text, x in (("the cage", 195.0), (f"one {name}, its tetrahedron", 594.0), ("its map", 1000.0))
+    ]
+    rows = [
+        Label(text, (195.0, y, 0.0), style.INK, style.SMALL_TEXT, anchor="cn")
+        for text, y in (("at rest", 436.0), (pages.said(case, *at), 50.0))
+    ]
+    views.append(View((*heads, *rows, *_numbers(A, kind.name))))
+    found = {
+        "shown": shown,
+        "corners": kind.ends[shown],
+        "tetrahedra": T,
+        "map": A,
+        "rotation_vector_degrees": np.degrees(_rotation(A)),
+        "stretches": np.linalg.svd(A[:3, :3], compute_uv=False),
+    }
+    return Drawing(Picture(tuple(views)), found, case.mesh.moved(moved.points), (*case.notes, *moved.notes))
+
+
+def _whole(
+    case: case_.Case, look: look_.Look, kind: cage_frames.Elements, moved: case_.Moved, shown: int
+) -> list[View]:
+    mesh = case.mesh
+    shapes = [case.vertices, moved.cage, mesh.vertices, moved.points]
+    seen = pages.camera(case, look, shapes, _SMALL[0])
+    rest, ground = look.upright(case.vertices), float(look.upright(mesh.vertices)[:, 2].min())
+    views = []
+    for k, (V, C) in enumerate(((mesh.vertices, case.vertices), (moved.points, moved.cage))):
+        X = look.upright(V)
+        body = look.body(X, mesh.faces, seen, float(k), min(ground, float(X[:, 2].min())))
+        views.append(
+            View((*body, *cages.cage(look.upright(C), rest, kind, seen, shown, dots=2.6)), seen, _SMALL[k])
+        )
+    return views
+
+
+def _frames(T: Array, A: Array) -> tuple[Array, Array]:
+    """A frame in the middle of the tetrahedron's base, and where the map takes it."""
+    frame = np.eye(4)
+    size = max(float(np.linalg.norm(T[i] - T[j])) for i, j in _SIDES)
+    frame[:3, :3] *= _FRAME * size
+    frame[:3, 3] = T[:3].mean(axis=0)
+    return frame, A @ frame
+
+
+def _tips(frame: Array) -> Array:
+    return frame[:3, 3] + frame[:3, :3].T
+
+
+def _tetrahedron(T: Array, kind: str, camera: Camera, moved: bool) -> list[Record]:
+    middle = T.mean(axis=0)
+    fill, edge = (style.AFTER, style.AFTER_EDGE) if moved else (style.GLASS, style.GLASS_EDGE)
+    records: list[Record] = [
+        Surface(T, np.array(_FACES[:1]), fill, material="flat", alpha=0.55),
+        Surface(T, np.array(_FACES[1:]), fill, material="flat", alpha=0.16),
+    ]
+    size = max(float(np.linalg.norm(T[i] - T[j])) for i, j in _SIDES)
+    for i, j in _SIDES:
+        base = j < 3
+        records.append(Lines(T[[i, j]], edge, style.CURVE if base else style.THIN, 1.0 if base else 0.8))
+    # An edge's third and fourth point belong to no side of the cage.
+    foot = T[0] if kind != "edges" else 0.5 * (T[0] + T[1])
+    for k in (3,) if kind != "edges" else (2, 3):
+        if np.linalg.norm(T[k] - foot) > 1e-9 * size:
+            records.append(Arrow(foot, T[k], style.INK, 0.011 * size, 3.0))
+    for k in range(4):
+        away = T[k] - middle
+        if np.linalg.norm(away) > 1e-9 * size:
+            text = rf"$p_{k + 1}'$" if moved else rf"$p_{k + 1}$"
+            records.append(marks.beyond(text, T[k], away, camera, room=50.0))
+    return records
+
+
+def _rotation(A: Array) -> Array:
+    """The rotation vector of the nearest rotation."""
+    return so3.log(polar.rotation(A[:3, :3])) if np.linalg.det(A[:3, :3]) > 0.0 else np.zeros(3)
+
+
+def _numbers(A: Array, kind: str) -> list[Record]:
+    s = np.linalg.svd(A[:3, :3], compute_uv=False)
+    records: list[Record] = [*brackets.matrix(A, _RIGHT, 600.0)]
+    angle = np.degrees(np.linalg.norm(_rotation(A)))
+    turned = rf"turned by ${angle:.0f}^{{\circ}}$"
+    if np.linalg.det(A[:3, :3]) <= 0.0:
+        turned = "turned inside out"
+    lines = (
+        (r"$\hat A_i\,p_k=p_k'$", 712.0, style.INK),
+        (turned, 452.0, style.INK),
+        ("stretched by", 404.0, style.INK),
+        (", ".join(f"${brackets.fixed(x)}$" for x in s), 362.0, style.INK),
+        (_FOURTH[kind][0], 244.0, style.MUTED),
+        (_FOURTH[kind][1], 198.0, style.MUTED),
+    )
+    middle = _RIGHT + 0.5 * brackets.width(A)
+    return records + [
+        Label(text, (middle, y, 0.0), color, style.SMALL_TEXT, anchor="cn") for text, y, color in lines
+    ]

@@ -1,0 +1,113 @@
+"""How cages and the weights of their elements look."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lietool.deform import cage_frames
+from lietool.mesh import solids, topology
+from lietool.render import mesh_lines, mesh_look, mesh_page, style
+from lietool.render.camera import Box, Camera
+from lietool.render.scene import Lines, Points, Record, Surface
+
+from . import _probe_look as look_
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+# Faces that meet at less, radians, are two halves of one.
+_FLAT = np.radians(18.0)
+_LIFT = 0.0025
+
+
+def cage(
+    V: Array, rest: Array, elements: cage_frames.Elements, camera: Camera, shown: int, dots: float = 4.5
+) -> list[Record]:
+    """Return a cage, its edges behind fainter, those between nearly coplanar faces thinner; one element marked."""
+    F = elements.faces
+    records: list[Record] = [
+        Surface(V, F, style.GLASS, material="flat", alpha=0.10),
+        *edges(V, rest, F, camera),
+        Points(V[np.unique(F)], style.GLASS_EDGE, dots, shaded=False),
+    ]
+    for face in F[elements.around[shown]]:
+        records.append(Lines(V[np.append(face, face[0])], style.ARC, 1.4 * style.CURVE, lift=0.004))
+    if elements.name != "faces":
+        ends = V[elements.points[shown]]
+        records.append(Points(ends, style.MARK, 8.0, shaded=False))
+        if len(ends) > 1:
+            records.append(Lines(ends, style.MARK, 2.0 * style.CURVE, lift=0.005))
+    return records
+
+
+def edges(V: Array, rest: Array, F: Index, camera: Camera, strength: float = 1.0) -> list[Record]:
+    """Return the edges of a cage."""
+    found = topology.edges("cage", F)
+    before, now = topology.area_normals(rest, F), topology.area_normals(V, F)
+    one, two = (mesh_lines.unit(before[found.sides[:, k]]) for k in range(2))
+    thin = np.sum(one * two, axis=1) > np.cos(_FLAT)
+    toward = np.einsum("mi,mi->m", now, camera.eye - V[F].mean(axis=1)) > 0.0
+    front = toward[found.sides].any(axis=1)
+    records: list[Record] = []
+    for mask, width, alpha in (
+        (front & ~thin, style.EDGE, 0.95),
+        (front & thin, style.HAIR, 0.75),
+        (~front & ~thin, style.HAIR, 0.50),
+        (~front & thin, style.HAIR, 0.22),
+    ):
+        ends = V[found.ends[mask]]
+        gaps = np.full((len(ends), 1, 3), np.nan)
+        points = np.concatenate([ends, gaps], axis=1).reshape(-1, 3)[:-1]
+        if len(points):
+            records.append(Lines(points, style.GLASS_EDGE, width, strength * alpha, lift=_LIFT))
+    return records
+
+
+def weighted(
+    V: Array, F: Index, weight: Array, high: float, look: look_.Look, camera: Camera, ground: float | None
+) -> list[Record]:
+    """Return a shape coloured by weights."""
+    colors = mesh_look.weight_colors(weight, high)
+    if look.dots:
+        return mesh_look.cloud(V, colors, look.dots)
+    N = solids.normals(V, F)
+    shadow = mesh_look.shadow(V, F, ground) if look.stands else []
+    return [
+        *shadow,
+        *mesh_look.surface(V, F, colors, normals=N),
+        *mesh_look.outline(V, F, camera, style.ALGEBRA_TEXT),
+        *mesh_look.eyes(V, N, look.eyes, look.eye),
+    ]
+
+
+def hatched(V: Array, F: Index, spots: Mask | None, camera: Camera, box: Box) -> list[Record]:
+    """Return slanted lines over the faces all of whose vertices are marked."""
+    if spots is None or not spots.any() or not len(F):
+        return []
+    return mesh_look.hatched(V, F[spots[F].all(axis=1)], camera, box)
+
+
+def high(weight: Array) -> float:
+    """Return where the ramp of weights ends: the least round number that is not below them."""
+    most = float(np.abs(weight).max())
+    if not most > 0.0:
+        return 1.0
+    step = 10.0 ** np.floor(np.log10(most) - 1e-9)
+    return float(
+        next(
+            k * step
+            for k in (1.0, 1.2, 1.6, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+            if k * step >= most * (1.0 - 1e-9)
+        )
+    )
+
+
+def bar(weight: Array, top: float, title: str, x: float = 640.0, y: float = 66.0) -> list[Record]:
+    """Return the ramp of weights; from below 0 where some are."""
+    low = -top if float(weight.min()) < -0.02 * top else 0.0
+    ticks = [(v, f"${v:g}$") for v in np.unique([low, 0.0, 0.5 * top, top])]
+
+    def colors(values: Array) -> object:
+        return mesh_look.weight_colors(values, top)
+
+    return mesh_page.color_bar((x, y, 240.0, 18.0), (low, top), ticks, title, colors)  # type: ignore[arg-type]
