@@ -162,7 +162,7 @@ def stronger(one: tuple[ArrayLike, ArrayLike], other: tuple[ArrayLike, ArrayLike
         topology.fail("image.stronger", "other", f"a field of shapes {_shapes(a)}", _shapes(b))
     chosen = []
     for x, y in zip(a, b, strict=True):
-        over = (1.0 * y * y - x * x).sum(axis=2) > 0.0 if x.ndim == 3 else np.abs(y) > np.abs(x)
+        over = (y * y - x * x).sum(axis=2) > 0.0 if x.ndim == 3 else np.abs(y) > np.abs(x)
         chosen.append(np.where(over[..., None] if x.ndim == 3 else over, y, x))
     return chosen[0], chosen[1]
 

@@ -181,26 +181,11 @@ def divergence(V: ArrayLike, F: ArrayLike) -> Any:
 def checked(where: str, V: ArrayLike, F: ArrayLike, flat: bool = False) -> tuple[Array, Index]:
     """Return vertices (n, 3) and triangles (m, 3) of which none is flat, unless they may be."""
     V = topology.vertices(where, "V", V, 3)
-    F = triangles(where, F, len(V))
+    F = topology.triangles(where, F, len(V))
     if not flat and (bad := degenerate(V, F)).any():
         remedy = "Remove them with surface.without_flat."
         topology.fail(where, "F", "triangles with an area", f"area 0 in {named('face', bad)}", remedy)
     return V, F
-
-
-def triangles(where: str, F: ArrayLike, count: int) -> Index:
-    """Return F as triangles (m, 3) of some of `count` vertices; they may use a vertex twice."""
-    a = np.asarray(F)
-    if a.ndim != 2 or a.shape[1:] != (3,) or a.dtype.kind not in "iu":
-        topology.fail(where, "F", "whole numbers of shape (m, 3)", f"{a.dtype} of shape {a.shape}")
-    if not len(a):
-        topology.fail(where, "F", "at least one triangle", "none")
-    a = a.astype(np.intp, copy=False)
-    if a.min() < 0 or a.max() >= count:
-        k = int(np.argmax(((a < 0) | (a >= count)).any(axis=1)))
-        got = f"{a[k].tolist()} at triangle {k}"
-        topology.fail(where, "F", f"indices of the {count} vertices, from 0", got)
-    return a
 
 
 def degenerate(V: Array, F: Index) -> NDArray[np.bool_]:

@@ -74,16 +74,7 @@ def faces(where: str, F: ArrayLike, count: int) -> Index:
     ValueError
         If F has another shape, an index out of range, a triangle with a vertex twice, or leaves a vertex out.
     """
-    a = np.asarray(F)
-    if a.ndim != 2 or a.shape[1:] != (3,) or a.dtype.kind not in "iu":
-        fail(where, "F", "whole numbers of shape (m, 3)", f"{a.dtype} of shape {a.shape}")
-    if not len(a):
-        fail(where, "F", "at least one triangle", "none")
-    a = a.astype(np.intp, copy=False)
-    outside = ((a < 0) | (a >= count)).any(axis=1)
-    if outside.any():
-        k = int(np.argmax(outside))
-        fail(where, "F", f"indices of the {count} vertices, from 0", f"{a[k].tolist()} at triangle {k}")
+    a = triangles(where, F, count)
     twice = (a[:, 0] == a[:, 1]) | (a[:, 1] == a[:, 2]) | (a[:, 2] == a[:, 0])
     if twice.any():
         k = int(np.argmax(twice))
@@ -93,6 +84,29 @@ def faces(where: str, F: ArrayLike, count: int) -> Index:
         k = int(np.argmax(unused))
         remedy = "Remove it, or give it a triangle."
         fail(where, "F", "a use of every vertex", f"none of vertex {k} ({int(unused.sum())} in all)", remedy)
+    return a
+
+
+def triangles(where: str, F: ArrayLike, count: int) -> Index:
+    """Return F as triangles (m, 3) of some of `count` vertices; they may use a vertex twice.
+
+    Raises
+    ------
+    ValueError
+        If F has another shape, no triangle, or an index out of range.
+    """
+    try:
+        a = np.asarray(F)
+    except ValueError:
+        fail(where, "F", "whole numbers of shape (m, 3)", "a ragged list")
+    if a.ndim != 2 or a.shape[1:] != (3,) or a.dtype.kind not in "iu":
+        fail(where, "F", "whole numbers of shape (m, 3)", f"{a.dtype} of shape {a.shape}")
+    if not len(a):
+        fail(where, "F", "at least one triangle", "none")
+    a = a.astype(np.intp, copy=False)
+    if a.min() < 0 or a.max() >= count:
+        k = int(np.argmax(((a < 0) | (a >= count)).any(axis=1)))
+        fail(where, "F", f"indices of the {count} vertices, from 0", f"{a[k].tolist()} at triangle {k}")
     return a
 
 

@@ -94,6 +94,26 @@ def test_tetrahedra_are_as_described():
     np.testing.assert_allclose(up, 1.0, atol=0.1)
 
 
+def test_what_is_added_has_the_root_of_the_mean_area_around():
+    V, F = bent()
+    n = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+    size = np.linalg.norm(n, axis=1)
+    elements = cage_frames.edges(F)
+    for end, T in zip(elements.points, cage_frames.tetrahedra(elements, V), strict=True):
+        here = np.isin(F, end).sum(axis=1) == 2
+        middle, up = V[end].mean(axis=0), n[here].sum(axis=0)
+        length = np.sqrt(size[here].mean())
+        beside = np.cross(up, V[end[1]] - V[end[0]])
+        np.testing.assert_allclose(T[2] - middle, length * up / np.linalg.norm(up), atol=1e-14)
+        np.testing.assert_allclose(T[3] - middle, length * beside / np.linalg.norm(beside), atol=1e-14)
+    elements = cage_frames.corners(F)
+    for (v,), T in zip(elements.points, cage_frames.tetrahedra(elements, V), strict=True):
+        here = (F == v).any(axis=1)
+        up = n[here].sum(axis=0)
+        length = np.sqrt(size[here].mean())
+        np.testing.assert_allclose(T[3] - T[0], length * up / np.linalg.norm(up), atol=1e-14)
+
+
 def test_neighbours():
     _, F = box()
     assert len(cage_frames.faces(F).pairs) == 18

@@ -100,6 +100,15 @@ def test_a_patch_that_is_turned_over_is_seen_against_a_guide_and_by_its_rim():
     assert len(distortion.folds(P, T, U))
 
 
+def test_a_fold_is_one_that_both_faces_see():
+    """Two faces of which one alone points away from where the other's rotation takes its normal."""
+    rest = np.array([[-0.27, -1.56, -0.38], [0.51, 0.59, -1.03], [0.3, 1.16, 1.76], [-0.7, -0.86, 0.05]])
+    now = np.array([[-2.93, -0.53, -0.27], [-0.46, -1.58, -0.25], [-0.78, 0.76, -0.92], [-0.28, -0.23, 0.57]])
+    pair = np.array([[0, 1, 2], [1, 0, 3]])
+    assert distortion.flipped_by_neighbours(rest, pair, now).tolist() == [False, True]
+    assert not len(distortion.folds(rest, pair, now))
+
+
 def test_bending_and_twisting_flip_nothing():
     P, T = sheet(9)
     angle = 0.6 * P[:, 0]

@@ -120,6 +120,10 @@ def test_the_stronger_of_two_fields():
     other = tuple(0.5 * x for x in rgb)
     for x, z in zip(rgb, image.stronger(other, rgb), strict=True):
         np.testing.assert_array_equal(x, z)
+    # By squares (3, 0) is stronger than (2, 2), which has the larger sum.
+    three, two = np.array([[[0.0, 0.0], [3.0, 0.0]]]), np.array([[[0.0, 0.0], [2.0, 2.0]]])
+    chosen, _ = image.stronger(image.gradient(two), image.gradient(three))
+    np.testing.assert_array_equal(chosen, [[[3.0, 0.0]]])
     assert image.stronger(a, a)[0] is not a[0]
 
 

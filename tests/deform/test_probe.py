@@ -160,6 +160,11 @@ def test_separate_weights():
         np.testing.assert_allclose(solve(w=same, way=way), solve(way=way), atol=1e-13)
         half = weights.separate(W, W, 0.5 * W)
         np.testing.assert_allclose(solve(current=RIGID @ REST, w=half, way=way), moved(RIGID, V), atol=1e-13)
+    # The origins are blended as the translations are, wherever those of rotations would put them.
+    other = weights.partition_of_unity(weights.gaussian(weights.distances(V, REST[:, :3, 3]), 0.7))
+    for name in ("phi_so", "polar_quaternion"):
+        result = solve(current=RIGID @ REST, w=weights.separate(other, W, W), way=ways.WAYS[name])
+        np.testing.assert_allclose(result, moved(RIGID, V), atol=1e-13)
     for name in ("linear", "dual_quaternion", "alexa"):
         with pytest.raises(
             ValueError, match=rf"^move\.solve: weights must be one for all: .*three, for {name}\.$"

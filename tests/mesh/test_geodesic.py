@@ -41,7 +41,8 @@ def test_in_the_plane_the_boundary_does_not_bend_distances():
     middle = int(np.argmin(np.linalg.norm(V - V.mean(axis=0), axis=1)))
     exact = np.linalg.norm(V - V[middle], axis=1)
     error = np.abs(geodesic.heat(V, F, [middle]) - exact) / exact.max()
-    assert error.mean() <= 0.01 and error.max() <= 0.05
+    # Of heat that may not cross the boundary alone the largest error is 0.027, of lost heat alone 0.087.
+    assert error.mean() <= 0.007 and error.max() <= 0.016
 
 
 def test_sets_are_solved_together_and_the_nearest_source_counts():

@@ -133,6 +133,8 @@ def test_broken_meshes_are_refused():
             f(V, np.where(np.arange(len(F))[:, None] == 2, 77, F))
         with pytest.raises(ValueError, match=r"F must be whole numbers of shape \(m, 3\)"):
             f(V, F.astype(float))
+        with pytest.raises(ValueError, match=r"F must be whole numbers of shape \(m, 3\); got a ragged list"):
+            f(V, [[0, 1, 2], [1, 2]])
         with pytest.raises(ValueError, match=r"F must be at least one triangle; got none"):
             f(V, F[:0])
         with pytest.raises(ValueError, match=r"V must be an array of shape \(k, 3\); got shape"):
