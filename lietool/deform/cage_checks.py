@@ -7,6 +7,7 @@ something only if they are its inner sides.  What is refused is named: the edge,
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lietool.deform import cage_view
 from lietool.mesh import topology
 
 Array = NDArray[np.float64]
@@ -113,18 +114,11 @@ def winding(points: Array, V: Array, F: Index) -> Array:
     Returns
     -------
     winding : (n,)
-        The solid angles by Van Oosterom and Strackee (1983), over 4 pi.
+        The sum of the solid angles over 4 pi.
     """
-    total = np.zeros(len(points))
-    step = max(1, _PAIRS // max(len(F), 1))
-    for start in range(0, len(points), step):
-        P = V[None] - points[start : start + step, None]
-        r = np.linalg.norm(P, axis=-1)
-        a, b, c = (P[:, F[:, i]] for i in range(3))
-        ra, rb, rc = (r[:, F[:, i]] for i in range(3))
-        high = np.einsum("cmi,cmi->cm", a, np.cross(b, c))
-        low = ra * rb * rc + _dot(a, b) * rc + _dot(b, c) * ra + _dot(c, a) * rb
-        total[start : start + step] = np.arctan2(high, low).sum(axis=1) / (2.0 * np.pi)
+    cage, total = cage_view.facets(V, F), np.zeros(len(points))
+    for part, seen in cage_view.chunks(cage, points):
+        total[part] = cage_view.solid_angles(cage, seen).sum(axis=1) / (4.0 * np.pi)
     return total
 
 

@@ -2,6 +2,7 @@
 
 from functools import partial
 
+import igl
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -108,7 +109,7 @@ def test_what_is_added_has_the_root_of_the_mean_area_around():
         np.testing.assert_allclose(T[3] - middle, length * beside / np.linalg.norm(beside), atol=1e-14)
     elements = cage_frames.corners(F)
     for (v,), T in zip(elements.points, cage_frames.tetrahedra(elements, V), strict=True):
-        here = (F == v).any(axis=1)
+        here = np.isin(F, v).any(axis=1)
         up = n[here].sum(axis=0)
         length = np.sqrt(size[here].mean())
         np.testing.assert_allclose(T[3] - T[0], length * up / np.linalg.norm(up), atol=1e-14)
@@ -423,6 +424,14 @@ def test_where_a_surface_lies_on_itself_the_rounding_of_normals_is_no_direction(
             cage_frames.rest(
                 cage_frames.edges(F), np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) @ R.T
             )
+
+
+def test_windings_are_libigls():
+    V, F = bent()
+    x = np.random.default_rng(6).uniform(V.min(axis=0) - 1.0, V.max(axis=0) + 1.0, size=(300, 3))
+    found = cage_checks.winding(x, V, F)
+    assert 0 < (found > 0.5).sum() < len(x)
+    np.testing.assert_allclose(found, igl.winding_number(V, F, x), atol=1e-12)
 
 
 def test_no_points_are_moved_nowhere():
