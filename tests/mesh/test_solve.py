@@ -64,6 +64,25 @@ def test_singular_ones_beyond_that_are_refused():
         solve.factor(L, []).solve(np.array([[1.0], [0.0]]), np.zeros((0, 1)))
 
 
+class Poor:
+    """Factors that are off by a share, as those of a nearly singular matrix."""
+
+    def __init__(self, solver, share: float):
+        self.solver, self.share = solver, share
+
+    def solve(self, b: np.ndarray) -> np.ndarray:
+        return (1.0 + self.share) * self.solver.solve(b)
+
+
+def test_a_poor_solution_is_improved_and_a_wrong_one_refused():
+    f, b, given = solve.factor(chain(30), [0]), np.sin(np.arange(30.0))[:, None], np.ones((1, 1))
+    good, f.solver = f.solve(b, given), Poor(f.solver, 1e-6)
+    np.testing.assert_allclose(f.solve(b, given), good, rtol=1e-11)
+    f.solver = Poor(f.solver, 0.5)
+    with pytest.raises(ValueError, match=r"^solve\.factor: L must be a regular matrix; got one that is"):
+        f.solve(b, given)
+
+
 def test_vertices_may_be_told_by_a_mask():
     L, b = chain(4), np.arange(4.0)[:, None]
     given = np.ones((2, 1))
