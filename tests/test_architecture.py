@@ -117,9 +117,11 @@ def _imports(file: Path) -> Iterator[Import]:
 
 
 def _a_part_beside(file: Path, node: ast.ImportFrom) -> bool:
-    """Whether it is ``from . import _part``: a long figure may keep a part of itself in a file beside it."""
-    ours = file.is_relative_to(paths.FIGURES) and node.level == 1 and node.module is None
-    return ours and all(alias.name.startswith("_") for alias in node.names)
+    """Whether it is ``from . import _part``, or from one: a long figure may keep parts of itself beside it."""
+    if not (file.is_relative_to(paths.FIGURES) and node.level == 1):
+        return False
+    names = [node.module] if node.module else [alias.name for alias in node.names]
+    return all(name.startswith("_") for name in names)
 
 
 def _our_part(words: list[str]) -> str:

@@ -304,8 +304,7 @@ def _tree(count: int, ends: Index, apart: Array, seeds: Index) -> tuple[Index, l
         across = np.flatnonzero((parent[both[:, 0]] > -2) & (parent[both[:, 1]] == -2))
         if not len(across):
             return parent, levels
-        # Over the smallest gap into each part that is not reached yet.
-        across = across[np.argsort(apart[across % len(ends)], kind="stable")]
+        across = across[np.argsort(apart[across % len(ends)], kind="stable")]  # the smallest gap first
         first = across[np.unique(island[both[across, 1]], return_index=True)[1]]
         front = both[first, 1]
         parent[front] = both[first, 0]
