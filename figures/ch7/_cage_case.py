@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from lietool.deform import (
     adjacency,
-    cage,
     cage_checks,
     cage_frames,
     cage_weights,
@@ -17,6 +16,7 @@ from lietool.deform import (
     orientation,
     ways,
 )
+from lietool.deform import cage as cage_
 from lietool.deform import weights as weights_of
 from lietool.lie import so3
 from lietool.mesh.surface import Mesh
@@ -120,19 +120,19 @@ class Moved:
     cage: Array
     points: Array
     weight: Array
-    pose: cage.Pose | None = None
+    pose: cage_.Pose | None = None
     fallback: Mask | None = None
     notes: tuple[str, ...] = ()
 
 
 @lru_cache(maxsize=16)
-def prepared(case: Case, by: str, power: float, ramp: float, world: bool) -> cage.Prepared:
+def prepared(case: Case, by: str, power: float, ramp: float, world: bool) -> cage_.Prepared:
     """The shape bound to its cage by maps of elements."""
     weigh = partial(
         cage_weights.weights, influence=partial(weights_of.inverse_distance, power=power), ramp=ramp
     )
     origin = np.zeros(3) if world else None
-    return cage.prepare(case.mesh.vertices, case.vertices, case.faces, KINDS[by], weigh, origin)
+    return cage_.prepare(case.mesh.vertices, case.vertices, case.faces, KINDS[by], weigh, origin)
 
 
 @lru_cache(maxsize=4)
@@ -182,17 +182,17 @@ def _by_maps(case: Case, choice: Choice, at: tuple[float, float, float], now: Ar
     way, bound = WAYS[choice.way], prepared(case, choice.by, choice.power, choice.ramp, choice.world)
     policy = None if way is ways.LINEAR else orientation.nearest
     if choice.turns == "followed" and way is ways.PHI_SO:
-        pose = cage.follow(bound, _sequence(case, at), policy).poses[-1]
+        pose = cage_.follow(bound, _sequence(case, at), policy).poses[-1]
     else:
         lift = None if choice.turns == "principal" else adjacency.consistent
-        pose = cage.pose(bound, now, way, policy, lift)
-    moved, notes = cage.moved(bound, pose), []
+        pose = cage_.pose(bound, now, way, policy, lift)
+    moved, notes = cage_.moved(bound, pose), []
     if pose.replaced.any():
         k = int(np.argmax(pose.replaced))
         ends = bound.elements.ends[k].tolist()
         notes.append(
-            f"{int(pose.replaced.sum())} of {len(pose.replaced)} {choice.by} turn inside out or flatten, first "
-            f"{k}, vertices {ends}; the nearest maps that do not stand in for theirs"
+            f"{int(pose.replaced.sum())} of {len(pose.replaced)} {choice.by} turn inside out or flatten, "
+            f"first {k}, vertices {ends}; the nearest maps that do not stand in for theirs"
         )
     if pose.lift is not None and choice.turns == "neighbours" and pose.lift.message:
         notes.append(f"{pose.lift.message[:-1]}, or write --turns followed")

@@ -17,17 +17,22 @@ from . import _probe_look as look_
 
 Array = NDArray[np.float64]
 
-_SMALL: tuple[Box, Box] = ((30.0, 466.0, 330.0, 340.0), (30.0, 84.0, 330.0, 340.0))
-_LARGE: tuple[Box, Box] = ((384.0, 478.0, 420.0, 316.0), (384.0, 96.0, 420.0, 316.0))
-_RIGHT = 830.0
-# The tetrahedron is seen from so much further round than the shape, so that its normal is not seen from its tip.
-_ROUND, _ABOVE = 52.0, 6.0
+_SMALL: tuple[Box, Box] = ((30.0, 476.0, 290.0, 336.0), (30.0, 84.0, 290.0, 336.0))
+_LARGE: tuple[Box, Box] = ((330.0, 476.0, 410.0, 336.0), (330.0, 84.0, 410.0, 336.0))
+_MIDDLE = 960.0
+_BARE = (0.0, 1.0)
+# It is seen from so much further round than the shape, so that its normal is not seen from its tip.
+_ROUND, _ABOVE = 40.0, 14.0
 # The frame that shows the map, over the longest side of the tetrahedron.
 _FRAME = 0.30
 _SIDES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 _FACES = ((1, 0, 2), (0, 1, 3), (1, 2, 3), (2, 0, 3))
 _FOURTH = {
-    "faces": (r"$\mathbf{n}=\mathbf{e}_1\times\mathbf{e}_2$", r"$p_4=p_1+\mathbf{n}/\sqrt{|\mathbf{n}|}$"),
+    "faces": (
+        r"$\mathbf{e}_1=p_2-p_1,\ \mathbf{e}_2=p_3-p_1$",
+        r"$\mathbf{n}=\mathbf{e}_1\times\mathbf{e}_2$",
+        r"$p_4=p_1+\mathbf{n}/\sqrt{|\mathbf{n}|}$",
+    ),
     "edges": (r"$p_3$, $p_4$: from the middle along", r"the mean normal, and across"),
     "corners": (r"$p_4$: from $p_1$ along", "the mean normal of its faces"),
 }
@@ -44,23 +49,23 @@ def explain(
     moved = case_.move(case, choice, *at, shown)
     views = _whole(case, look, kind, moved, shown)
     aside = look.turned(_ROUND, _ABOVE)
-    frames = _frames(T[0], A)
-    extents = [look.upright(np.concatenate([t, _tips(f)])) for t, f in zip(T, frames, strict=True)]
+    *frames, size = _frames(T[0], A)
+    extents = [look.upright(np.concatenate([t, _tips(f, size)])) for t, f in zip(T, frames, strict=True)]
     seen = mesh_page.each(extents, aside.direction, _LARGE, 1.24)
     for k in range(2):
         records = _tetrahedron(look.upright(T[k]), kind.name, seen[k], moved=k == 1)
         frame = look.upright(frames[k])
         views.append(View(tuple(records), seen[k], _LARGE[k]))
         # The frame stands inside of the tetrahedron.
-        views.append(View(tuple(mesh_look.probe(frame, 1.0, moved=k == 1)), seen[k], _LARGE[k]))
+        views.append(View(tuple(mesh_look.probe(frame, size, moved=k == 1)), seen[k], _LARGE[k]))
     name = pages.NAMES[choice.by]
     heads = [
         Label(text, (x, mesh_page.TITLE, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
-        for text, x in (("the cage", 195.0), (f"one {name}, its tetrahedron", 594.0), ("its map", 1000.0))
+        for text, x in (("cage", 175.0), (f"tetrahedron of one {name}", 535.0), ("its map", _MIDDLE))
     ]
     rows = [
-        Label(text, (195.0, y, 0.0), style.INK, style.SMALL_TEXT, anchor="cn")
-        for text, y in (("at rest", 436.0), (pages.said(case, *at), 50.0))
+        Label(text, (175.0, y, 0.0), style.INK, style.SMALL_TEXT, anchor="cn")
+        for text, y in (("at rest", 440.0), ("in the pose", 48.0))
     ]
     views.append(View((*heads, *rows, *_numbers(A, kind.name))))
     found = {
@@ -91,17 +96,16 @@ def _whole(
     return views
 
 
-def _frames(T: Array, A: Array) -> tuple[Array, Array]:
-    """A frame in the middle of the tetrahedron's base, and where the map takes it."""
+def _frames(T: Array, A: Array) -> tuple[Array, Array, float]:
+    """A frame in the middle of the tetrahedron's base, where the map takes it, and how large it is drawn."""
     frame = np.eye(4)
     size = max(float(np.linalg.norm(T[i] - T[j])) for i, j in _SIDES)
-    frame[:3, :3] *= _FRAME * size
     frame[:3, 3] = T[:3].mean(axis=0)
-    return frame, A @ frame
+    return frame, A @ frame, _FRAME * size
 
 
-def _tips(frame: Array) -> Array:
-    return frame[:3, 3] + frame[:3, :3].T
+def _tips(frame: Array, size: float) -> Array:
+    return frame[:3, 3] + size * frame[:3, :3].T
 
 
 def _tetrahedron(T: Array, kind: str, camera: Camera, moved: bool) -> list[Record]:
@@ -135,7 +139,7 @@ def _rotation(A: Array) -> Array:
 
 def _numbers(A: Array, kind: str) -> list[Record]:
     s = np.linalg.svd(A[:3, :3], compute_uv=False)
-    records: list[Record] = [*brackets.matrix(A, _RIGHT, 600.0)]
+    records: list[Record] = [*brackets.matrix(A, _MIDDLE - 0.5 * brackets.width(A, _BARE), 600.0, bare=_BARE)]
     angle = np.degrees(np.linalg.norm(_rotation(A)))
     turned = rf"turned by ${angle:.0f}^{{\circ}}$"
     if np.linalg.det(A[:3, :3]) <= 0.0:
@@ -145,10 +149,8 @@ def _numbers(A: Array, kind: str) -> list[Record]:
         (turned, 452.0, style.INK),
         ("stretched by", 404.0, style.INK),
         (", ".join(f"${brackets.fixed(x)}$" for x in s), 362.0, style.INK),
-        (_FOURTH[kind][0], 244.0, style.MUTED),
-        (_FOURTH[kind][1], 198.0, style.MUTED),
+        *((text, 262.0 - 46.0 * k, style.MUTED) for k, text in enumerate(_FOURTH[kind])),
     )
-    middle = _RIGHT + 0.5 * brackets.width(A)
     return records + [
-        Label(text, (middle, y, 0.0), color, style.SMALL_TEXT, anchor="cn") for text, y, color in lines
+        Label(text, (_MIDDLE, y, 0.0), color, style.SMALL_TEXT, anchor="cn") for text, y, color in lines
     ]

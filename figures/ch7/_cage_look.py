@@ -23,7 +23,7 @@ _LIFT = 0.0025
 def cage(
     V: Array, rest: Array, elements: cage_frames.Elements, camera: Camera, shown: int, dots: float = 4.5
 ) -> list[Record]:
-    """Return a cage, its edges behind fainter, those between nearly coplanar faces thinner; one element marked."""
+    """Return a cage, the edges behind and those between nearly coplanar faces fainter; one element marked."""
     F = elements.faces
     records: list[Record] = [
         Surface(V, F, style.GLASS, material="flat", alpha=0.10),

@@ -80,8 +80,8 @@ def _case(
     outside = found.outside
     if len(outside):
         notes.append(
-            f"{len(outside)} of {len(mesh.vertices)} vertices are outside of the cage, first {outside[0]}; they "
-            "are moved too, but less as the cage is"
+            f"{len(outside)} of {len(mesh.vertices)} vertices are outside of the cage, "
+            f"first {outside[0]}; they are moved too, but less as the cage is"
         )
     return case_.noted(found, tuple(notes))
 
@@ -91,8 +91,8 @@ def _moved(rest: Mesh, cage: Path | None, to: Path) -> Array:
     now = surface_io.read(to)
     if len(now.vertices) != len(rest.vertices):
         raise ValueError(
-            f"to must be the cage {cage} moved, {len(rest.vertices)} vertices; got {len(now.vertices)} in {to}. "
-            "Move its vertices only, and keep their order"
+            f"to must be the cage {cage} moved, {len(rest.vertices)} vertices; got {len(now.vertices)} in "
+            f"{to}. Move its vertices only, and keep their order"
         )
     same = now.faces.shape == rest.faces.shape and bool((now.faces == rest.faces).all())
     if not same:

@@ -112,8 +112,9 @@ def _numbers(
     }
     if moved.pose is not None:
         found["map"] = moved.pose.maps[shown]
-        if moved.pose.lift is not None:
-            found["rotation_vector_degrees"] = np.degrees(moved.pose.lift.vectors[shown])
+        encoded = moved.pose.encoded
+        if encoded.way.whole_turns and encoded.way.parts is not None:
+            found["rotation_vector_degrees"] = np.degrees(encoded.params[shown, encoded.way.parts[0]])
     return found
 
 
@@ -139,7 +140,7 @@ def compare(
     views: list[View] = []
     labels: list[Record] = []
     volumes, stretches = [], []
-    for (title, _), box, m, each in zip(COMPARED, boxes, all_, chosen, strict=True):
+    for (title, _), box, m in zip(COMPARED, boxes, all_, strict=True):
         X = look.upright(m.points)
         body = look.body(X, mesh.faces, seen, 1.0, min(ground, float(X[:, 2].min())))
         hatches = cages.hatched(X, mesh.faces, m.fallback, seen, box)

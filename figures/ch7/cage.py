@@ -52,11 +52,11 @@ _MAPS = ("coordinates", "maps")
             title="A duck in its cage",
             equations=("M 5",),
             caption=(
-                "A duck in a cage of 108 triangles. The upper part of the cage turns by 50 degrees and leans "
+                "A duck in a cage of 108 triangles. The upper part of the cage turns by 40 degrees and leans "
                 "forward, and the head in it looks to the side. Colour tells the weight of one face at "
                 "the cheek (outlined)."
             ),
-            params={"example": "duck", "bend": 10.0, "twist": -50.0},
+            params={"example": "duck", "bend": 10.0, "twist": -40.0},
         ),
     },
     time=Time("t", 0.0, 1.0),
