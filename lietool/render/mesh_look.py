@@ -32,8 +32,12 @@ _LIFT, _NEAR = 0.0025, 0.001
 _OUTLINE = 3.0
 # The head of a small arrow, in radii of its shaft.
 _HEAD = 2.4
-# How a spiral opens beyond a full turn, each turn.
-_OPENING = 0.16
+# How far the spiral of more than a full turn opens: in all at least, and each turn at least.
+_OPENING, _EACH_TURN = 0.25, 0.2
+# Of the arc of a turn, in its radius: half of the width of its line; its head is 0.4 long.
+_ARC, _ARC_HEAD = 0.035, 3.8
+# From the arc to the middle of its name, in page units.
+_NAME = 24.0
 
 
 def surface(
@@ -190,7 +194,9 @@ def turn(
     text: str | None = None,
     room: float = 60.0,
 ) -> list[Record]:
-    """Return the arc of a turn with its head and its angle; past a full turn it opens to a spiral.
+    """Return the arc of a turn with its head and its angle; more than a full turn is a spiral.
+
+    The spiral opens by a quarter on its way, so that its end is beside its beginning and not on it.
 
     Parameters
     ----------
@@ -198,6 +204,7 @@ def turn(
     x : array_like, shape (3,)
         Rotation vector, radians; any length.
     radius : float
+        Of the arc, or of the beginning of the spiral.
     camera : Camera
         The arc begins where it is seen best from there, and ends at its name.
     color : str
@@ -215,12 +222,15 @@ def turn(
     v = mesh_lines.unit(across) if np.linalg.norm(across) > 1e-6 else solids.frame_along(u)[:, 0]
     along = np.linspace(0.0, angle, max(round(angle / 0.05), 2) + 1)
     ring = np.cos(along)[:, None] * v + np.sin(along)[:, None] * np.cross(u, v)
-    opening = radius * (1.0 + _OPENING * np.maximum(along / (2.0 * np.pi) - 1.0, 0.0))
-    records = marks.curved_arrow(center + opening[:, None] * ring, color, 0.035 * radius, 3.2)
+    turns = angle / (2.0 * np.pi)
+    grown = max(_OPENING, _EACH_TURN * turns) if turns > 1.0 + 1e-9 else 0.0
+    opening = radius * (1.0 + grown * along / angle)
+    records = marks.curved_arrow(center + opening[:, None] * ring, color, _ARC * radius, _ARC_HEAD)
     name = rf"${np.degrees(angle):.0f}^{{\circ}}$" if text is None else text
     if name:
         out = ring[-1] if angle > np.pi else ring[len(ring) // 2]
-        records.append(marks.beyond(name, center + opening[-1] * out, out, camera, color=color, room=room))
+        at = center + opening[-1] * out
+        records.append(marks.beyond(name, at, out, camera, color=color, gap=_NAME, room=room))
     return records
 
 

@@ -206,7 +206,11 @@ class TestMarks:
         start, tip = np.asarray(tube.points)[0], np.asarray(head.end)
         angle = np.arctan2(tip[1], tip[0]) - np.arctan2(start[1], start[0])
         assert np.degrees(angle) % 360.0 == pytest.approx(40.0)
-        assert np.linalg.norm(tip) > 1.01 * np.linalg.norm(start)
+        assert np.linalg.norm(start) == pytest.approx(0.5)
+        assert np.linalg.norm(tip) == pytest.approx(1.25 * 0.5)
+        assert np.linalg.norm(tip - head.start) > 0.39 * 0.5
+        plain = mesh_look.turn((0.0, 0.0, 0.0), 0.7 * x, 0.5, CAMERA)[1]
+        assert np.linalg.norm(plain.end) == pytest.approx(0.5)
         assert mesh_look.turn((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.5, CAMERA) == []
 
     def test_a_cage_shows_no_diagonals(self):
