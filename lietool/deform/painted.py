@@ -49,6 +49,10 @@ def read(path: str | Path, count: int, names: Sequence[str] = ()) -> Array:
         weights = _named(place, surface_io.read(path), names)
     else:
         place.fail("weights, .txt, .csv, .ply, .obj or .glb", ending or "no ending")
+    if not np.max(np.abs(weights)) <= checks.LARGEST:
+        i, k = checks.first(~(np.abs(weights) <= checks.LARGEST))
+        got = f"{weights[i, k]:g} of handle {k} at vertex {i}"
+        place.fail(f"weights of at most {checks.LARGEST:g} in size", got)
     if len(weights) != count:
         place.fail(f"weights of the {count} vertices of the mesh", f"{len(weights)} of them")
     return weights

@@ -117,7 +117,8 @@ def _check(place: Place, mesh: Mesh) -> None:
     bad = np.any(~(np.abs(mesh.vertices) <= topology.LARGEST), axis=1)
     if bad.any():
         (k,) = checks.first(bad)
-        place.fail("a mesh of finite vertices", f"{mesh.vertices[k].tolist()} as vertex {k}")
+        must = f"a mesh of vertices that are finite and at most {topology.LARGEST:g} in size"
+        place.fail(must, f"{mesh.vertices[k].tolist()} as vertex {k}")
     named = {"colour": mesh.colours, "texture coordinate": mesh.uv} | mesh.attributes
     for name, values in named.items():
         if values is not None and not np.isfinite(values).all():
@@ -137,11 +138,29 @@ def _loaded(place: Place, data: bytes, kind: str) -> Any:
         # trimesh warns of broken numbers; what is wrong with them is said afterwards.
         with np.errstate(all="ignore"):
             return trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False)
+    except ModuleNotFoundError:
+        # What it would guess by in which letters a text is written.
+        place.fail(f"a mesh, .{kind}, whose text is UTF-8", "other bytes", remedy="Save it anew.")
     except Exception as error:  # its readers raise whatever the broken file leads them to
         place.fail(f"a mesh, .{kind}, that trimesh reads", f"an error, {place.cause(error)}")
 
 
+def _plain_stl(place: Place, data: bytes) -> bytes:
+    """Return a file .stl that trimesh takes for what it is; a binary one that is cut off is refused."""
+    count = int.from_bytes(data[80:84], "little")
+    if data.isascii() or (len(data) >= 84 and len(data) == 84 + 50 * count):
+        return data
+    if data.lstrip().startswith(b"solid") and b"\0" not in data:
+        # Letters of a name or a comment, in whatever code.
+        return data.decode("ascii", "replace").replace("\ufffd", "?").encode("ascii")
+    if len(data) < 84:
+        place.fail("a mesh, .stl, with a head of 84 bytes", f"{len(data)}", remedy="Save it anew.")
+    must = f"a whole mesh, of the {84 + 50 * count} bytes that the {count} triangles in its head take"
+    place.fail(must, f"{len(data)}", remedy="Save it anew.")
+
+
 def _decode_stl(place: Place, data: bytes) -> Mesh:
+    data = _plain_stl(place, data)
     parts = [part for part in _loaded(place, data, "stl").geometry.values() if len(part.faces)]
     if not parts:
         place.fail("a mesh with faces", "none")

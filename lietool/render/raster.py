@@ -54,19 +54,25 @@ def read(path: Path) -> Raster:
     """
     from PIL import Image, ImageOps, UnidentifiedImageError
 
+    too_many = f"an image of at most {LARGEST} pixels each way"
     try:
         with Image.open(path) as opened:
             if max(opened.size) > LARGEST:
                 got = "x".join(map(str, opened.size))
-                _fail(path, f"an image of at most {LARGEST} pixels each way", got, "Make it smaller.")
-            upright = ImageOps.exif_transpose(opened)
-            return _raster(upright)
+                _fail(path, too_many, got, "Make it smaller.")
+            found = _raster(ImageOps.exif_transpose(opened))
+    except Image.DecompressionBombError:
+        # Of so many Pillow says that before it lets anybody look at the size.
+        _fail(path, too_many, "far more", "Make it smaller.")
     # What Pillow's readers raise when a file ends too early or contradicts itself.
     except (OSError, SyntaxError, EOFError, OverflowError, TypeError, IndexError, KeyError) as error:
         got = f"an error, {type(error).__name__}"
         if isinstance(error, UnidentifiedImageError):
             got = "something else"
         _fail(path, "an image that can be read, such as a .png", got, "Save it anew.")
+    if not np.isfinite(found.levels).all():
+        _fail(path, "an image of finite levels", "nan or infinity", "Save it as a .png.")
+    return found
 
 
 def _fail(path: Path, must: str, got: str, remedy: str) -> NoReturn:

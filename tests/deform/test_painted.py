@@ -57,6 +57,12 @@ def test_what_is_wrong_is_said_in_a_line(write):
         ("w.txt", "", (), "an empty one"),
         ("w.txt", "1\n", ["arm"], "to have names; got .txt"),
         ("w.npy", b"1", (), "weights, .txt, .csv, .ply, .obj or .glb; got .npy"),
+        (
+            "w.txt",
+            "1\n2\n-1e200\n4\n",
+            (),
+            r"of at most 1e\+150 in size; got -1e\+200 of handle 0 at vertex 2",
+        ),
         ("w.obj", plain, (), "a mesh with numbers or colours of vertices; got none of them"),
         ("w.ply", ply, ["hand"], "a mesh with numbers hand of vertices; got arm, leg"),
         ("w.ply", ply, ["red"], "a mesh with numbers red of vertices; got arm, leg"),

@@ -225,7 +225,16 @@ BROKEN = {
     "binary.obj": (b"\0\1\2\3", "a mesh, .obj; got"),
     "garbage.off": (GARBAGE, "text in UTF-8"),
     "garbage.ply": (GARBAGE, "a mesh that begins with ply"),
-    "garbage.stl": (GARBAGE, "a mesh, .stl, that trimesh reads; got an error"),
+    "garbage.stl": (GARBAGE, r"a whole mesh, of the \d+ bytes that the 1397903696 triangles .*; got 2048\."),
+    "short.stl": (GARBAGE[:80] + b"\xff", r"a mesh, \.stl, with a head of 84 bytes; got 81\. Save"),
+    "letters.glb": (
+        glb({"asset": {"version": "2.0", "generator": "~"}}).replace(b"~", b"\xff"),
+        r"a mesh, \.glb, (whose text is UTF-8; got other bytes|that trimesh reads; got an error)",
+    ),
+    "far.obj": (
+        GOOD_OBJ + "v 1e90 0 0\nf 1 2 3\n",
+        r"vertices that are finite and at most 1e\+70 in size; got \[1e\+90, 0.0, 0.0\] as vertex 3",
+    ),
     "garbage.glb": (GARBAGE, "a mesh, .glb, that trimesh reads; got an error"),
     "none.obj": (GOOD_OBJ, "a mesh with faces; got 3 vertices and 0 faces"),
     "nan.obj": (
@@ -257,7 +266,7 @@ BROKEN = {
     "range.ply": (PLY + "3 0 1 7\n", "faces use its vertices, 0 to 2; got 7 in face 0"),
     "nan.ply": (
         PLY.replace("0 1 0\n", "nan 1 0\n") + "3 0 1 2\n",
-        r"finite vertices; got \[nan, .* as vertex 2",
+        r"vertices that are finite .*; got \[nan, .* as vertex 2",
     ),
     "weight.ply": (
         surface_io.encode(Mesh(V, F, attributes={"arm": np.full(6, np.inf)}), ".ply"),
@@ -287,13 +296,24 @@ BROKEN = {
     ),
     "cut.glb": (surface_io.encode(FULL, ".glb")[:-40], "a mesh, .glb, that trimesh reads"),
     "none.glb": (glb({"asset": {"version": "2.0"}}), "a mesh with faces; got none|trimesh reads"),
-    "cut.stl": (surface_io.encode(FULL, ".stl")[:-10], "a mesh, .stl, that trimesh reads"),
+    "cut.stl": (
+        surface_io.encode(FULL, ".stl")[:-10],
+        r"a whole mesh, of the (\d+) bytes that the \d triangles in its head take; got \d+\. Save it anew",
+    ),
     "zero.stl": (b"solid a\nendsolid a\n", "a mesh with faces; got none|trimesh reads"),
     "nan.stl": (
         bytes(84 - 4) + struct.pack("<I12fH", 1, 0, 0, 1, 0, 0, float("nan"), 1, 0, 0, 0, 1, 0, 0),
         "a mesh of finite vertices; got",
     ),
 }
+
+
+def test_an_stl_in_letters_may_have_a_name_in_any_code(write):
+    text = surface_io.encode(Mesh(V[:5], F), ".stl")
+    letters = trimesh.load_mesh(write("a.stl", text)).export(file_type="stl_ascii")
+    for name in ("H\xfclle".encode("latin-1"), "H\xfclle".encode()):
+        mesh = surface_io.read(write("b.stl", letters.encode().replace(b"solid", b"solid " + name, 1)))
+        np.testing.assert_allclose(mesh.vertices[mesh.faces], V[F], atol=1e-6)
 
 
 @pytest.mark.parametrize("name", BROKEN)

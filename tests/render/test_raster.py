@@ -1,5 +1,8 @@
 """Images in files: levels and opacity as Pillow writes them, and files that are none."""
 
+import struct
+import zlib
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -64,6 +67,23 @@ class TestRefused:
         Image.new("L", (5000, 2)).save(tmp_path / "a.png")
         with pytest.raises(ValueError, match="at most 4096 pixels each way; got 5000x2"):
             raster.read(tmp_path / "a.png")
+
+    def test_far_too_many(self, tmp_path):
+        head = struct.pack(">IIBBBBB", 50000, 50000, 8, 2, 0, 0, 0)
+        chunks = [(b"IHDR", head), (b"IDAT", zlib.compress(bytes(9))), (b"IEND", b"")]
+        data = b"".join(
+            struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+            for kind, body in chunks
+        )
+        (tmp_path / "a.png").write_bytes(b"\x89PNG\r\n\x1a\n" + data)
+        with pytest.raises(ValueError, match=r"a\.png must be .* at most 4096 pixels each way; got far more"):
+            raster.read(tmp_path / "a.png")
+
+    @pytest.mark.parametrize("level", [np.nan, -np.nan])
+    def test_levels_that_are_none(self, tmp_path, level):
+        Image.fromarray(np.full((4, 5), level, np.float32)).save(tmp_path / "a.tiff")
+        with pytest.raises(ValueError, match=r"a\.tiff must be an image of finite levels; got nan"):
+            raster.read(tmp_path / "a.tiff")
 
 
 def test_fitted():
