@@ -50,7 +50,8 @@ def pose(
     mesh: Annotated[Path | None, Param("a mesh of yours, .obj .ply .off .stl .glb", positional=1)] = None,
     keys: Annotated[Path | None, Param("a file of key poses, .toml or .json")] = None,
     shape: Annotated[
-        Literal["duck", "animal", "cactus", "octopus"], Param("what is moved where no mesh is given")
+        Literal["duck", "animal", "cactus", "octopus"],
+        Param("what is moved where no mesh is given", unless=("mesh",)),
     ] = "duck",
     curve: Annotated[
         Literal["b_spline", "b_spline_near", "bezier", "catmull_rom", "straight"],
@@ -78,7 +79,9 @@ def pose(
     low, high = V.min(axis=0), V.max(axis=0)
     size = float((high - low).max())
     given = (
-        keys_of.example((low + high) / 2.0, size) if keys is None else keys_of.read(keys, (low + high) / 2.0)
+        keys_of.example((low + high) / 2.0, size)
+        if keys is None
+        else keys_of.read(keys, (low + high) / 2.0, size)
     )
     rows = [_row(given, name, curve) for name in (parametrisation, "alexa", "linear")]
     if rows[0].path is None:

@@ -217,10 +217,19 @@ def content(place: Place) -> Table:
         place.fail("a file .toml or .json", ending or "no ending", remedy="Name it after what it holds.")
     text = read_text(place)
     try:
-        data = tomllib.loads(text) if ending == ".toml" else json.loads(text)
+        data = tomllib.loads(text) if ending == ".toml" else json.loads(text, object_pairs_hook=_once)
     except BROKEN as error:
         place.fail(f"a {ending[1:].upper()} file", place.cause(error))
     return Table(place, "", {}).table("", data, "")
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return a table of JSON, whose reader would keep the last of several values without a word."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise ValueError(f"the key {next(key for key in keys if keys.count(key) > 1)!r} twice in a table")
+    return table
 
 
 def _probes(top: Table) -> Probes:

@@ -71,6 +71,8 @@ def _turned(table: Table) -> tuple[Array, Array]:
         if total != 0.0:
             table.fail("axis", "given beside degrees or turns", "none")
         return np.eye(3), np.zeros(3)
+    if not {"degrees", "turns"} & set(table.data):
+        table.fail("axis", "left out, or given degrees or turns beside it", shown(table.data["axis"]))
     if abs(total) > 1e9:
         table.fail("degrees", "at most 1e9 degrees with the turns", f"{total:g}")
     u = table.axis("axis")

@@ -62,7 +62,8 @@ class Table:
         if a is None:
             self.fail(key, must, shown(value))
         if not np.all(np.abs(a) <= checks.LARGEST):
-            self.fail(key, f"finite, {must}", shown(value))
+            limit = f"at most {checks.LARGEST:g} in size" if np.isfinite(a).all() else "finite"
+            self.fail(key, f"{limit}, {must}", shown(value))
         return a
 
     def axis(self, key: str) -> Array:

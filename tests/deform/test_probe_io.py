@@ -205,6 +205,14 @@ FLAT = str(np.diag([1.0, 1.0, 0.0, 1.0]).tolist())
             HEAD + AT + "current = { axis = [0, 0, 1], degrees = 1e12 }",
             r"probe 2 \(tip\), current, degrees must be at most 1e9",
         ),
+        (
+            HEAD + AT + "current = { axis = [0, 0, 1] }",
+            r"current, axis must be left out, or given degrees or turns beside it; got \[0, 0, 1\]",
+        ),
+        (
+            HEAD + AT + "current = { scale = 1e300 }",
+            r"current, scale must be at most 1e\+150 in size, a number or a list of 3 numbers; got 1e\+300",
+        ),
         (HEAD + AT + "current = { scale = -1 }", r"probe 2 \(tip\), current, scale must be above 0; got -1"),
         (
             HEAD + AT + "current = { scale = [1, 2] }",
@@ -251,6 +259,10 @@ def test_every_mistake_is_named(tmp_path, text, message):
         ("[1]", r"p\.json must be a table; got \[1\]"),
         ("[" * 100000, r"p\.json must be a JSON file"),
         ('{"probe": [{"centre": [0, 0, NaN]}]}', r"probe 1, centre must be finite"),
+        (
+            '{"probe": [{"centre": [0, 0, 0], "centre": [0, 0, 1]}]}',
+            r"p\.json must be a JSON file; got the key 'centre' twice in a table",
+        ),
         ('{"probe": [{"centre": null}]}', r"probe 1, centre must be a list of 3 numbers; got None"),
         ('{"probe": [{"centre": {}}]}', r"probe 1, centre must be a list of 3 numbers; got a table"),
     ],

@@ -121,13 +121,27 @@ class TestFiles:
             ({"key": [{}]}, "two or more; got one"),
             ({"key": []}, "at least two"),
             ({"keys": [{}, {}]}, "a table of centre, key; got the key 'keys'"),
+            ({"key": [{}] * 201}, "at most 200 keys; got 201"),
+            ({"key": [{}, {"turn": 1}]}, "a table of time, axis"),
+            (
+                {"key": [{}, {"scale": 1e9}]},
+                r"key 2 must be a pose that stretches by at most 1e\+06; got 1e\+09",
+            ),
+            (
+                {"key": [{}, {"translation": [0, 1e90, 0]}]},
+                r"key 2 must be a pose within 1e\+06 times the shape's size, .*; got .*e\+\d\d times it",
+            ),
+            ('{"key": [{}], "key": [{}, {}]}', "the key 'key' twice"),
             ({"key": [{}, {"turn": 1}]}, "key 2 must be a table of .*; got the key 'turn'"),
             (
                 {"key": [{"time": 1}, {"time": 1}]},
                 "key 2 has a later time than the one before; got 1 after 1",
             ),
             ({"key": [{}, {"scale": -1}]}, "key 2, scale must be above 0"),
-            ({"key": [{}, {"matrix": np.diag([1, 1, -1, 1]).tolist()}]}, "det > 0; got det = -1"),
+            (
+                {"key": [{}, {"matrix": np.diag([1, 1, -1, 1]).tolist()}]},
+                "key 2, matrix must be of positive determinant; got singular values 1, 1, -1",
+            ),
             ("{", "must be a JSON file"),
         ],
         ids=str,
