@@ -271,6 +271,15 @@ class TestMeshes:
             ("spin -o a.obj --size 3cm", "--size says how to draw, and a .obj is no picture. Leave it out"),
             ("spin -o a.obj --fps 3", "--seconds and --fps are for films. "),
             ("spin -o a%d.obj --turn 3", "a .obj sweeps --turn, so it cannot be given too. Leave out"),
+            (
+                "spin -o a%d-%d.obj",
+                "--output a%d-%d.obj must have one number to count by; got %d and %d. Write",
+            ),
+            ("spin -o a%10d.obj", "--output a%10d.obj must have one number to count by; got %10d. Write for"),
+            (
+                "spin -o a%d.png",
+                "--output a%d.png must be one file, for numbered ones hold meshes; got %d in",
+            ),
             ("solid -o a%d.obj", "solid has no time to animate. "),
             ("spin -o no/a%d.obj", "--output no/a%d.obj: there is no folder no. Make it first"),
         ],
@@ -280,6 +289,16 @@ class TestMeshes:
         assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1)
         assert result.stderr.startswith(f"lietool {words.split()[0]}: {line}")
         assert _left(folder) == []
+
+    def test_a_row_too_large_is_not_begun(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(_mesh, "_MOST_BYTES", 1 << 9)
+        line = "--output a%d.obj must be files of at most 0 MiB together; got 5 of "
+        result = _run("spin", "-o", "a%d.obj")
+        assert (result.exit_code, result.stdout, _left(folder)) == (2, "", [])
+        assert line in result.stderr and "Write fewer, by --fps" in result.stderr
+
+    def test_a_name_with_a_sign_is_a_name(self, folder: Path) -> None:
+        assert _run("spin", "-o", "100%.obj").stdout == "100%.obj\n"
 
     def test_a_figure_without_one_says_so(self, folder: Path) -> None:
         file = folder.parent / "project/figures/ch9/flat.py"

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 # Repeated here so that completion need not load numpy; a test compares them with `mesh`.
 ENDINGS = (".obj", ".off", ".ply", ".stl", ".glb")
 _NUMBER = re.compile(r"%(0[1-9])?d")
+# What somebody means by it, who may have written something else.
+_MEANT = re.compile(r"%[-+ #0-9]*[diu]")
+# Of a row of files, which are all made before the first is written.
+_MOST_BYTES = 1 << 30
 
 
 def check(figure: Figure, values: Mapping[str, object], ending: str, quality: "Quality") -> None:
@@ -43,8 +47,28 @@ def check(figure: Figure, values: Mapping[str, object], ending: str, quality: "Q
 
 
 def numbered(path: Path) -> bool:
-    """Return whether a file name asks for a row of files: ``frame-%03d.obj``."""
-    return path.suffix.lower() in ENDINGS and len(_NUMBER.findall(path.name)) == 1
+    """Return whether a file name asks for a row of files: ``frame-%03d.obj``.
+
+    Raises
+    ------
+    click.UsageError
+        If it asks for one in another way, or for one of pictures.
+    """
+    meant = _MEANT.findall(path.name)
+    if not meant:
+        return False
+    ending = path.suffix.lower()
+    if ending not in ENDINGS:
+        raise click.UsageError(
+            f"--output {path.name} must be one file, for numbered ones hold meshes; got "
+            f"{' and '.join(meant)} in the name of a {ending}. Leave it out, or write a .gif or .mp4"
+        )
+    if len(meant) > 1 or not _NUMBER.fullmatch(meant[0]):
+        raise click.UsageError(
+            f"--output {path.name} must have one number to count by; got {' and '.join(meant)}. "
+            f"Write for example frame-%03d{ending}"
+        )
+    return True
 
 
 def still(mesh: Any, ending: str) -> bytes:
@@ -57,10 +81,22 @@ def still(mesh: Any, ending: str) -> bytes:
 def moving(
     draw: Callable[..., Drawing], values: Mapping[str, Any], time: Time, path: Path
 ) -> dict[Path, bytes]:
-    """Return the files of a row and their contents: each moment of a film once, up to its far end."""
+    """Return the files of a row and their contents: each moment of a film once, up to its far end.
+
+    Raises
+    ------
+    click.UsageError
+        If they are too large together.
+    """
     width = (_NUMBER.findall(path.name) or [""])[0] or "d"
     found = {}
-    for number, t in enumerate(dict.fromkeys(_film.sweep(time))):
+    moments = list(dict.fromkeys(_film.sweep(time)))
+    for number, t in enumerate(moments):
         file = path.with_name(_NUMBER.sub(f"{number:{width}}", path.name))
         found[file] = still(draw(**{**values, time.param: t}).mesh, path.suffix.lower())
+        if (size := len(found[file]) * len(moments)) > _MOST_BYTES:
+            raise click.UsageError(
+                f"--output {path.name} must be files of at most {_MOST_BYTES >> 20} MiB together; got "
+                f"{len(moments)} of {len(found[file]) / 2**20:.3g} MiB, {size >> 20}. Write fewer, by --fps"
+            )
     return found
