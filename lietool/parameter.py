@@ -24,7 +24,8 @@ class Param:
 
     Components of a vector that `help` names, as in ``"start (w, x, y, z)"``, are named in messages too.
     `only` names another parameter and those of its choices with which this one has a part in the picture:
-    ``only=("view", "rings")``.  A file may also be given without its option: ``positional=1`` is the first
+    ``only=("view", "rings")``; `unless` names those beside which it has none when they are given: one's own
+    files, ``unless=("mesh",)``.  A file may also be given without its option: ``positional=1`` is the first
     word on the command line that belongs to no option; files, which are the last, take all that follow.
     """
 
@@ -34,6 +35,7 @@ class Param:
     high: float | None = None
     choices: tuple[str, ...] = ()
     only: tuple[str, ...] = ()
+    unless: tuple[str, ...] = ()
     positional: int = 0
 
 
@@ -54,7 +56,7 @@ class Parameter:
     @property
     def option(self) -> str:
         """The long option: ``--q0``."""
-        return "--" + self.name.replace("_", "-")
+        return _option(self.name)
 
     @property
     def range(self) -> str:
@@ -71,11 +73,14 @@ class Parameter:
 
     @property
     def where(self) -> str:
-        """With which choice it has a part, in words: ``"with --view rings"``, or nothing."""
-        if not self.param.only:
-            return ""
-        name, *choices = self.param.only
-        return f"with --{name.replace('_', '-')} {' or '.join(choices)}"
+        """When it has a part, in words: ``"with --view rings"``, ``"without --mesh"``, or nothing."""
+        words = []
+        if self.param.only:
+            name, *choices = self.param.only
+            words.append(f"with {_option(name)} {' or '.join(choices)}")
+        if self.param.unless:
+            words.append(f"without {' and '.join(map(_option, self.param.unless))}")
+        return ", ".join(words)
 
     @property
     def word(self) -> str:
@@ -84,7 +89,20 @@ class Parameter:
 
     def idle(self, values: Mapping[str, object]) -> bool:
         """Return whether it has no part in the picture, given all parameters."""
-        return bool(self.param.only) and values[self.param.only[0]] not in self.param.only[1:]
+        return bool(self.idle_because(values))
+
+    def idle_because(self, values: Mapping[str, object]) -> str:
+        """Return why it has no part in the picture and what to do, given all parameters; or nothing."""
+        param = self.param
+        for name in param.unless:
+            # What is not given is None, or empty.
+            if values[name]:
+                return f"has no part in the picture beside {_option(name)}. Leave out one of them"
+        if param.only and values[param.only[0]] not in param.only[1:]:
+            name, *choices = param.only
+            must = f"with {_option(name)} {' or '.join(choices)}"
+            return f"has a part in the picture only {must}. Leave it out, or write that"
+        return ""
 
     @property
     def components(self) -> str:
@@ -191,6 +209,10 @@ class Parameter:
         except OverflowError:
             return False
         return math.isfinite(number) and low <= number <= high
+
+
+def _option(name: str) -> str:
+    return "--" + name.replace("_", "-")
 
 
 def _is_file(value: Any) -> typing.TypeGuard[str | os.PathLike]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lietool.deform import move, orientation, probe, turns, ways, weights
 from lietool.deform.probe_io import Poses, Probes
 from lietool.lie import polar, so3
-from lietool.mesh import geodesic
+from lietool.mesh import geodesic, surface
 from lietool.mesh.surface import Mesh
 
 from ._probe_look import Look
@@ -117,11 +117,22 @@ def _along(mesh: Mesh, centres: Array) -> Array:
         raise ValueError(
             "distance must be straight for a cloud; got surface, which it has none of. Leave it out"
         )
+    flat = surface.health(mesh.vertices, mesh.faces).flat
+    if len(flat):
+        raise ValueError(
+            f"distance must be straight where faces have no area; got surface, with none in {_first(flat)}. "
+            "Remove them, or leave it out"
+        )
     used = np.unique(mesh.faces)
     near = used[np.argmin(weights.distances(mesh.vertices[used], centres), axis=0)]
     found = geodesic.solve(geodesic.prepare(mesh.vertices, mesh.faces), list(near[:, None]))
     # Rounding may leave a distance a little below 0.
     return np.maximum(found, 0.0)
+
+
+def _first(faces: NDArray[np.intp]) -> str:
+    more = f" and {len(faces) - 4} more" if len(faces) > 4 else ""
+    return f"face {', '.join(map(str, faces[:4]))}{more}"
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,8 @@ from . import _probe_own as own
 from . import _probe_pages as pages
 from ._probe_case import WAYS, Moving, Recipe
 
+# What makes a case one's own, on a page of its own.
+_OWN = ("shape", "probes", "probe", "poses")
 _KINDS = ("inverse-distance", "cutoff", "gaussian")
 
 
@@ -94,7 +96,7 @@ _KINDS = ("inverse-distance", "cutoff", "gaussian")
 def probe(
     example: Annotated[
         Literal["duck", "cactus", "bend", "vortex", "strings", "octopus", "particles"],
-        Param("which shape with its probes, where none of your own is given"),
+        Param("which shape with its probes, where none of your own is given", unless=("shape",)),
     ] = "duck",
     way: Annotated[
         Literal["phi-so", "phi-se", "alexa", "polar-quaternion", "dual-quaternion", "linear"],
@@ -102,7 +104,11 @@ def probe(
     ] = "phi-so",
     beside: Annotated[
         Literal["none", "phi-so", "phi-se", "alexa", "polar-quaternion", "dual-quaternion", "linear"],
-        Param("another way of blending beside it", only=("example", "bend", "strings", "octopus")),
+        Param(
+            "another way of blending beside it",
+            only=("example", "bend", "strings", "octopus"),
+            unless=_OWN,
+        ),
     ] = "polar-quaternion",
     t: Annotated[
         float, Param("how far the probes are on their way, or through your sequence", low=0.0, high=1.0)
@@ -148,7 +154,8 @@ def probe(
         ),
     ] = "centre",
     steps: Annotated[
-        int, Param("stages that are shown", low=2, high=7, only=("example", "bend", "strings"))
+        int,
+        Param("stages that are shown", low=2, high=7, only=("example", "bend", "strings"), unless=_OWN),
     ] = 4,
     around: Annotated[
         float, Param("seen from so much further round to the left", "deg", -180.0, 180.0)

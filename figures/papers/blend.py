@@ -11,6 +11,8 @@ from lietool.mesh import solids
 from . import _blend_controller, _blend_family, _blend_population, _blend_ways
 
 _THORN = ("example", "thorn")
+# Files are given together: one is enough to tell.
+_OWN = ("rest",)
 _LED = ("view", "controller", "ray")
 
 
@@ -84,7 +86,7 @@ def blend(
             "the blended shape alone"
         ),
     ] = "ways",
-    example: Annotated[Literal["thorn", "animals"], Param("which shapes of ours")] = "thorn",
+    example: Annotated[Literal["thorn", "animals"], Param("which shapes of ours", unless=_OWN)] = "thorn",
     weights: Annotated[
         tuple[float, ...],
         Param("of the targets, or one for all of them", low=-5.0, high=5.0, only=("view", "ways", "shape")),
@@ -109,13 +111,17 @@ def blend(
     ] = 0.6,
     maps: Annotated[
         Literal["faces", "stated"],
-        Param("of the thorn's faces: with their normals, or as the targets are made", only=_THORN),
+        Param(
+            "of the thorn's faces: with their normals, or as the targets are made", only=_THORN, unless=_OWN
+        ),
     ] = "faces",
-    angle: Annotated[float, Param("turn of the thorn", "deg", 0.0, 180.0, only=_THORN)] = 134.0,
-    shear: Annotated[float, Param("of the thorn, as a logarithm", low=0.0, high=0.6, only=_THORN)] = 0.3,
+    angle: Annotated[float, Param("turn of the thorn", "deg", 0.0, 180.0, only=_THORN, unless=_OWN)] = 134.0,
+    shear: Annotated[
+        float, Param("of the thorn, as a logarithm", low=0.0, high=0.6, only=_THORN, unless=_OWN)
+    ] = 0.3,
     stretch: Annotated[
         tuple[float, float, float],
-        Param("of the thorn (x, y, z), as logarithms", low=-0.5, high=0.5, only=_THORN),
+        Param("of the thorn (x, y, z), as logarithms", low=-0.5, high=0.5, only=_THORN, unless=_OWN),
     ] = (0.2, 0.2, 0.0),
     count: Annotated[int, Param("of variations", low=1, high=30, only=("view", "population"))] = 12,
     seed: Annotated[int, Param("of their weights", low=0, high=10**6, only=("view", "population"))] = 7,
@@ -161,5 +167,9 @@ def _weights(weights: tuple[float, ...], count: int) -> np.ndarray:
     """One weight for each target."""
     if len(weights) not in (1, count):
         got = ",".join(f"{w:g}" for w in weights)
-        raise ValueError(f"weights must be {count} numbers, one for each target, or one for all; got {got}")
+        many = "" if count == 1 else f", or {count}"
+        raise ValueError(
+            f"weights must be one number{many}, for there {'is' if count == 1 else 'are'} {count} "
+            f"target{'s' * (count > 1)}; got {got}. Leave some out, or name more targets"
+        )
     return np.array(weights) if len(weights) == count else np.full(count, weights[0])

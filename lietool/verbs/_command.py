@@ -56,10 +56,9 @@ class _Command(click.Command):
         explicit = {name: value for name, value in given.items() if value is not None}
         explicit |= _placed(self.figure, words, explicit)
         params = (self.figure.plate_params(plate) if plate else {}) | explicit
-        for idle in self.figure.idle(self.figure.check(params), explicit):
-            raise click.UsageError(
-                f"{idle.option} has a part in the picture only {idle.where}. Leave it out, or write that"
-            )
+        values = self.figure.check(params)
+        for idle in self.figure.idle(values, explicit):
+            raise click.UsageError(f"{idle.option} {idle.idle_because(values)}")
         quality = _picture.Quality(size, dpi, theme, draft, backend)
         pace = _film.Pace(seconds, fps)
         _picture.make(self.figure, params, output, quality, pace=pace, numbers=json, swept=set(explicit))

@@ -244,9 +244,18 @@ class TestOwn:
                 "rest.obj nan.obj",
                 "nan.obj must be a mesh with positions of three finite numbers; got 'nan 0 0'",
             ),
-            ("rest.obj tall.obj --weights 1,2,3", "weights must be 1 numbers, one for each target"),
+            (
+                "rest.obj tall.obj --weights 1,2,3",
+                "weights must be one number, for there is 1 target; got 1,2,3.",
+            ),
+            (
+                "rest.obj tall.obj fat.obj --weights 1,2,3",
+                "must be one number, or 2, for there are 2 targets;",
+            ),
+            ("rest.obj tall.obj --example thorn", "--example has no part in the picture beside --rest. "),
+            ("rest.obj tall.obj --angle 3", "--angle has no part in the picture beside --rest. "),
             ("rest.obj tall.obj --view controller", "a controller must have two targets or more; got 1."),
-            ("rest.obj tall.obj --maps stated", "maps must be faces with shapes of your own; got stated."),
+            ("rest.obj tall.obj --maps stated", "--maps has no part in the picture beside --rest."),
         ],
     )
     def test_a_mistake_is_one_line(self, work, words, line):

@@ -262,6 +262,33 @@ MISTAKES = {
     ),
     "a cloud of words": (("w.xyz",), "must be a cloud of points; got none"),
     "a cloud of pairs": (("pairs.xyz",), "must be lines of three numbers; got 2 in line 2"),
+    "an example beside one's own": (
+        ("bar.ply", "--example", "duck"),
+        "--example has no part in the picture beside --shape. Leave out one of them",
+    ),
+    "stages of one's own": (
+        ("--example", "bend", "--probes", "two.toml", "--steps", "3"),
+        "--steps has no part in the picture beside --probes",
+    ),
+    "no probe in words": (("bar.ply", "--probe", ";"), "probe must be one probe or more in words; got ';'"),
+    "a probe far off": (
+        ("bar.ply", "--probe", "name=sun centre=1e20,0,0 axis=0,0,1 degrees=9"),
+        "probe sun must be within 1e+06 times the shape's size",
+    ),
+    "a pose far off": (("bar.ply", "--probes", "two.toml", "--poses", "away.toml"), "must be within 1e+06"),
+    "a probe that bursts": (
+        ("bar.ply", "--probe", "name=sun centre=0,0,0 scale=1e99"),
+        "probe sun must stretch by at most 1e+06; got 1e+99",
+    ),
+    "too many poses": (
+        ("bar.ply", "--probe", "name=tip centre=0,0,0", "--poses", "long.toml"),
+        "poses must be at most 3600 poses; got 3601 in long.toml. Leave some out",
+    ),
+    "a dust": (("dust.xyz",), "must have an extent above 1e-70; got "),
+    "faces without area": (
+        ("flat.off", "--weights", "gaussian", "--distance", "surface"),
+        "distance must be straight where faces have no area; got surface, with none in face 1. ",
+    ),
     "a cloud at one place": (("one.xyz",), "must have an extent"),
 }
 
@@ -282,6 +309,10 @@ def test_mistakes_are_one_line(mistake, bar):
         "w.xyz": "some words\n",
         "pairs.xyz": "0 0 0\n1 2\n",
         "one.xyz": "1 1 1\n1 1 1\n",
+        "dust.xyz": "1e-300 0 0\n0 0 0\n",
+        "flat.off": "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n2 0 0\n3 0 1 2\n3 0 1 3\n",
+        "away.toml": "[[pose]]\ntip = { translation = [0, 0, 1e30] }\n",
+        "long.toml": "[[pose]]\n" * 3601,
     }
     for name, text in files.items():
         bar.with_name(name).write_text(text)
