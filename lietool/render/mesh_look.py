@@ -11,12 +11,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lietool.render import marks, mesh_lines, solids, style
+from lietool.render import marks, mesh_lines, polyline, solids, style
 from lietool.render.camera import Box, Camera
 from lietool.render.mesh_lines import CREASE
 from lietool.render.mesh_shading import shading
 from lietool.render.mesh_shadow import shadow as shadow
-from lietool.render.scene import Arrow, Lines, Points, Record, Surface
+from lietool.render.scene import Arrow, Lines, Points, Record, Surface, Tube
 from lietool.render.theme import Color, Mix
 
 Array = NDArray[np.float64]
@@ -34,8 +34,8 @@ _OUTLINE = 3.0
 _HEAD = 2.4
 # How far the spiral of more than a full turn opens: in all at least, and each turn at least.
 _OPENING, _EACH_TURN = 0.25, 0.2
-# Of the arc of a turn, in its radius: half of the width of its line; its head is 0.4 long.
-_ARC, _ARC_HEAD = 0.035, 3.8
+# Of the arc of a turn, in its radius: half of the width of its line; the length of its head and half its width.
+_ARC, _ARC_HEAD = 0.035, (0.42, 0.15)
 # From the arc to the middle of its name, in page units.
 _NAME = 24.0
 
@@ -225,13 +225,25 @@ def turn(
     turns = angle / (2.0 * np.pi)
     grown = max(_OPENING, _EACH_TURN * turns) if turns > 1.0 + 1e-9 else 0.0
     opening = radius * (1.0 + grown * along / angle)
-    records = marks.curved_arrow(center + opening[:, None] * ring, color, _ARC * radius, _ARC_HEAD)
+    records = _bent_arrow(center + opening[:, None] * ring, color, radius)
     name = rf"${np.degrees(angle):.0f}^{{\circ}}$" if text is None else text
     if name:
         out = ring[-1] if angle > np.pi else ring[len(ring) // 2]
         at = center + opening[-1] * out
         records.append(marks.beyond(name, at, out, camera, color=color, gap=_NAME, room=room))
     return records
+
+
+def _bent_arrow(points: Array, color: str, radius: float) -> list[Record]:
+    """An arrow along the arc of a turn: its head is larger than that of `marks.curved_arrow`."""
+    long, wide = _ARC_HEAD[0] * radius, _ARC_HEAD[1] * radius
+    if polyline.remaining(points)[0] <= 1.5 * long:
+        return marks.curved_arrow(points, color, _ARC * radius, 3.2)
+    base, tip = polyline.shortened(points, long)[-1], points[-1]
+    shaft = polyline.shortened(points, 0.9 * long)
+    cone, faces, normals = solids.revolve([(0.0, 0.0), (wide, 0.0), (0.0, float(np.linalg.norm(tip - base)))])
+    axes = solids.frame_along(tip - base)
+    return [Tube(shaft, color, _ARC * radius), Surface(cone @ axes.T + base, faces, color, normals @ axes.T)]
 
 
 def cage(

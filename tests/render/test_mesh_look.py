@@ -203,14 +203,17 @@ class TestMarks:
         *arc, name = mesh_look.turn((0.0, 0.0, 0.0), x, 0.5, CAMERA)
         assert name.text == r"$400^{\circ}$"
         tube, head = arc
-        start, tip = np.asarray(tube.points)[0], np.asarray(head.end)
+        cone = np.asarray(head.vertices)
+        start = np.asarray(tube.points)[0]
+        tip = cone[np.argmax(np.linalg.norm(cone - tube.points[-1], axis=1))]
         angle = np.arctan2(tip[1], tip[0]) - np.arctan2(start[1], start[0])
         assert np.degrees(angle) % 360.0 == pytest.approx(40.0)
         assert np.linalg.norm(start) == pytest.approx(0.5)
         assert np.linalg.norm(tip) == pytest.approx(1.25 * 0.5)
-        assert np.linalg.norm(tip - head.start) > 0.39 * 0.5
-        plain = mesh_look.turn((0.0, 0.0, 0.0), 0.7 * x, 0.5, CAMERA)[1]
-        assert np.linalg.norm(plain.end) == pytest.approx(0.5)
+        plain = mesh_look.turn((0.0, 0.0, 0.0), 0.7 * x, 0.5, CAMERA)[0].points
+        assert np.linalg.norm(plain, axis=1) == pytest.approx(0.5)
+        short = mesh_look.turn((0.0, 0.0, 0.0), 0.05 * x, 0.5, CAMERA)[0]
+        assert isinstance(short, Arrow) and np.linalg.norm(short.end) == pytest.approx(0.5)
         assert mesh_look.turn((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.5, CAMERA) == []
 
     def test_a_cage_shows_no_diagonals(self):
