@@ -117,7 +117,7 @@ def _imports(file: Path) -> Iterator[Import]:
 
 
 def _a_part_beside(file: Path, node: ast.ImportFrom) -> bool:
-    """Whether it is ``from . import _part``, or from one: a long figure may keep parts of itself beside it."""
+    """Whether it is ``from . import _part``, or from one: a long figure may keep parts beside itself."""
     if not (file.is_relative_to(paths.FIGURES) and node.level == 1):
         return False
     names = [node.module] if node.module else [alias.name for alias in node.names]
