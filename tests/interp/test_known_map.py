@@ -1,8 +1,9 @@
 """A shape bent by a known map, of which every moment is known: z -> (exp(i k z) - 1) / (i k).
 
-This map is conformal, and its derivative exp(i k z) at a point is a rotation and a scale, of which the
-power t is exp(i k t z): the derivative of the same map with t k for k.  So the local maps of a fine mesh, taken
-apart into rotation and stretch, fit together at every moment, and the shape between is the source bent by t k.
+This map is conformal, and its derivative exp(i k z) at a point is a rotation and a scale, of which
+the power t is exp(i k t z): the derivative of the same map with t k for k.  So the local maps of a fine
+mesh, taken apart into rotation and stretch, fit together at every moment, and the shape between is the
+source bent by t k.
 """
 
 from pathlib import Path
