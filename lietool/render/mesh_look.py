@@ -34,7 +34,7 @@ _OUTLINE = 3.0
 _HEAD = 2.4
 # How far the spiral of more than a full turn opens: in all at least, and each turn at least.
 _OPENING, _EACH_TURN = 0.25, 0.2
-# Of the arc of a turn, in its radius: half of the width of its line; the length of its head and half its width.
+# Of the arc of a turn, in its radius: half the width of its line; the length and half the width of its head.
 _ARC, _ARC_HEAD = 0.035, (0.42, 0.15)
 # From the arc to the middle of its name, in page units.
 _NAME = 24.0
