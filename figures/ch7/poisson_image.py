@@ -16,8 +16,9 @@ from . import _paste
 
 Array = np.ndarray
 
-_TITLE, _SECOND, _FOOT = 846.0, 516.0, 50.0
-_UPPER: tuple[Box, ...] = tuple((40.0 + 386.0 * k, 566.0, 348.0, 262.0) for k in range(3))
+_TITLE, _SECOND, _FOOT = 846.0, 516.0, 52.0
+# The upper images lie between these edges, at most so wide, with equal gaps.
+_LEFT, _RIGHT, _UPPER = 40.0, 1160.0, (348.0, 262.0)
 _LOWER: tuple[Box, ...] = ((40.0, 96.0, 542.0, 404.0), (618.0, 96.0, 542.0, 404.0))
 # The relief where the field is 0, and how much a step of one level lightens it.
 _LEVEL, _GAIN = 168.0, 5.0
@@ -32,8 +33,10 @@ _MOST = 1100
             equations=("7.10", "7.11"),
             caption=(
                 "A balloon on a bright day, a sky at dusk, and the field g': inside the red line the "
-                "gradient of the one, outside that of the other. Below, the pixels copied, with a seam, and "
-                "the image whose gradient is nearest to g': no seam, and the balloon in the evening's light."
+                "gradient of the one, outside that of the other; drawn as a relief lit from the upper left, "
+                "grey where g' is 0. Below, the pixels copied, with a seam, and the image whose gradient is "
+                "nearest to g': no seam, and the balloon in the evening's light. In its shade three per cent "
+                "of what is pasted would be darker than black."
             ),
         ),
     },
@@ -85,6 +88,7 @@ def _numbers(made: _paste.Edit) -> dict[str, object]:
             "target": made.step(made.paste.target),
         },
         "energy": {"copy": made.energy(made.copy), "result": made.result.energy},
+        "darker than black": float((edited[made.paste.inside] < 0.0).any(axis=1).mean()),
         "range": [float(edited.min()), float(edited.max())],
         "result, some rows and every ninth column": edited[rows][:, ::9],
     }
@@ -107,7 +111,7 @@ def _story(made: _paste.Edit) -> scene.Picture:
         (given.target, given.inside, "target"),
         (_relief(made.field), given.inside, "guidance field $\\mathbf{g}'$"),
     )
-    for box, (levels, mask, name) in zip(_UPPER, upper, strict=True):
+    for box, (levels, mask, name) in zip(_row([levels for levels, *_ in upper]), upper, strict=True):
         records += _panel(box, levels, name, _TITLE, mask)
     lower = (
         (made.copy, "pixels copied"),
@@ -115,9 +119,22 @@ def _story(made: _paste.Edit) -> scene.Picture:
     )
     for box, (levels, name) in zip(_LOWER, lower, strict=True):
         records += _panel(box, levels, name, _SECOND)
-        step = f"step across the edge: {number(made.step(levels), 1)} of 255"
-        records.append(_text(step, box, _FOOT, style.SMALL_TEXT))
+    steps = [number(made.step(levels), 1) for levels in (made.copy, made.result.image, given.target)]
+    lines = (
+        f"mean step across the seam: {steps[0]} of 255",
+        f"across the seam: {steps[1]} (the target's own: {steps[2]})",
+    )
+    for box, line in zip(_LOWER, lines, strict=True):
+        records.append(_text(line, box, _FOOT, style.SMALL_TEXT))
     return scene.Picture((scene.View(tuple(records)),))
+
+
+def _row(images: list[Array]) -> list[Box]:
+    """Boxes of the images of the upper row, which are not of one width: with equal gaps, edge to edge."""
+    own = [raster.fitted((0.0, 566.0, *_UPPER), (a.shape[1], a.shape[0])) for a in images]
+    gap = (_RIGHT - _LEFT - sum(box[2] for box in own)) / (len(own) - 1)
+    left = _LEFT + np.concatenate([[0.0], np.cumsum([box[2] + gap for box in own])])
+    return [(float(x), box[1], box[2], box[3]) for x, box in zip(left, own, strict=False)]
 
 
 def _panel(box: Box, levels: Array, name: str, base: float, mask: Array | None = None) -> list[scene.Record]:
