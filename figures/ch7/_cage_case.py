@@ -192,10 +192,11 @@ def _by_maps(case: Case, choice: Choice, at: tuple[float, float, float], now: Ar
         ends = bound.elements.ends[k].tolist()
         notes.append(
             f"{int(pose.replaced.sum())} of {len(pose.replaced)} {choice.by} turn inside out or flatten, "
-            f"first {k}, vertices {ends}; the nearest maps that do not stand in for theirs"
+            f"first {k}, vertices {ends}; the nearest maps that do neither take their place"
         )
     if pose.lift is not None and choice.turns == "neighbours" and pose.lift.message:
-        notes.append(f"{pose.lift.message[:-1]}, or write --turns followed")
+        said = pose.lift.message.partition(". ")[0]
+        notes.append(said if case.to is not None else f"{said}. Write --turns followed")
     if moved.fallback.any():
         notes.append(
             f"{int((~pose.encoded.able).sum())} of {len(pose.encoded.able)} {choice.by} have no logarithm; "
@@ -207,8 +208,12 @@ def _by_maps(case: Case, choice: Choice, at: tuple[float, float, float], now: Ar
 
 def _sequence(case: Case, at: tuple[float, float, float]) -> list[Array]:
     t, bend, twist = at
-    far = 180.0 if case.to is not None else abs(bend) + abs(twist)
-    count = max(int(np.ceil(t * far / _STEP)), 1)
+    if case.to is not None:
+        raise ValueError(
+            "turns must be neighbours or principal where a file says how the cage is moved, for it does not "
+            "say by which way; got followed. Leave it out"
+        )
+    count = max(int(np.ceil(t * (abs(bend) + abs(twist)) / _STEP)), 1)
     return [case.posed(t * s, bend, twist) for s in np.linspace(0.0, 1.0, count + 1)]
 
 

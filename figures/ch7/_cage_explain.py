@@ -58,6 +58,8 @@ def explain(
         views.append(View(tuple(records), seen[k], _LARGE[k]))
         # The frame stands inside of the tetrahedron.
         views.append(View(tuple(mesh_look.probe(frame, size, moved=k == 1)), seen[k], _LARGE[k]))
+    x = pages.rotation_vector(moved, shown)
+    angle = float(np.degrees(np.linalg.norm(_rotation(A) if x is None else x)))
     name = pages.NAMES[choice.by]
     heads = [
         Label(text, (x, mesh_page.TITLE, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
@@ -67,7 +69,7 @@ def explain(
         Label(text, (175.0, y, 0.0), style.INK, style.SMALL_TEXT, anchor="cn")
         for text, y in (("at rest", 440.0), ("in the pose", 48.0))
     ]
-    views.append(View((*heads, *rows, *_numbers(A, kind.name))))
+    views.append(View((*heads, *rows, *_numbers(A, angle, kind.name))))
     found = {
         "shown": shown,
         "corners": kind.ends[shown],
@@ -137,10 +139,13 @@ def _rotation(A: Array) -> Array:
     return so3.log(polar.rotation(A[:3, :3])) if np.linalg.det(A[:3, :3]) > 0.0 else np.zeros(3)
 
 
-def _numbers(A: Array, kind: str) -> list[Record]:
+def _numbers(A: Array, angle: float, kind: str) -> list[Record]:
+    # What is 0 or 1 but for rounding is written so.
+    shown = np.round(A, 9) + 0.0
     s = np.linalg.svd(A[:3, :3], compute_uv=False)
-    records: list[Record] = [*brackets.matrix(A, _MIDDLE - 0.5 * brackets.width(A, _BARE), 600.0, bare=_BARE)]
-    angle = np.degrees(np.linalg.norm(_rotation(A)))
+    records: list[Record] = [
+        *brackets.matrix(shown, _MIDDLE - 0.5 * brackets.width(shown, _BARE), 600.0, bare=_BARE)
+    ]
     turned = rf"turned by ${angle:.0f}^{{\circ}}$"
     if np.linalg.det(A[:3, :3]) <= 0.0:
         turned = "turned inside out"

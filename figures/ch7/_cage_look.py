@@ -31,12 +31,15 @@ def cage(
         Points(V[np.unique(F)], style.GLASS_EDGE, dots, shaded=False),
     ]
     for face in F[elements.around[shown]]:
-        records.append(Lines(V[np.append(face, face[0])], style.ARC, 1.4 * style.CURVE, lift=0.004))
+        ring = V[np.append(face, face[0])]
+        # A dark rim, without which it would be lost in grey.
+        records.append(Lines(ring, style.INK, 2.2 * style.CURVE, lift=0.004))
+        records.append(Lines(ring, style.ARC, 1.2 * style.CURVE, lift=0.006))
     if elements.name != "faces":
         ends = V[elements.points[shown]]
         records.append(Points(ends, style.MARK, 8.0, shaded=False))
         if len(ends) > 1:
-            records.append(Lines(ends, style.MARK, 2.0 * style.CURVE, lift=0.005))
+            records.append(Lines(ends, style.MARK, 2.0 * style.CURVE, lift=0.008))
     return records
 
 
@@ -105,7 +108,7 @@ def high(weight: Array) -> float:
 def bar(weight: Array, top: float, title: str, x: float = 640.0, y: float = 66.0) -> list[Record]:
     """Return the ramp of weights; from below 0 where some are."""
     low = -top if float(weight.min()) < -0.02 * top else 0.0
-    ticks = [(v, f"${v:g}$") for v in np.unique([low, 0.0, 0.5 * top, top])]
+    ticks = [(v, f"${v:g}$") for v in ((low, 0.0, top) if low < 0.0 else (0.0, 0.5 * top, top))]
 
     def colors(values: Array) -> object:
         return mesh_look.weight_colors(values, top)

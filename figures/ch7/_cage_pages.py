@@ -112,10 +112,20 @@ def _numbers(
     }
     if moved.pose is not None:
         found["map"] = moved.pose.maps[shown]
-        encoded = moved.pose.encoded
-        if encoded.way.whole_turns and encoded.way.parts is not None:
-            found["rotation_vector_degrees"] = np.degrees(encoded.params[shown, encoded.way.parts[0]])
+        x = rotation_vector(moved, shown)
+        if x is not None:
+            found["rotation_vector_degrees"] = np.degrees(x)
     return found
+
+
+def rotation_vector(moved: case_.Moved, shown: int) -> Array | None:
+    """Return the rotation vector of an element with its turns, if the way has one."""
+    if moved.pose is None:
+        return None
+    encoded = moved.pose.encoded
+    if not encoded.way.whole_turns or encoded.way.parts is None:
+        return None
+    return encoded.params[shown, encoded.way.parts[0]]
 
 
 def volume(mesh: Mesh, X: Array) -> float:

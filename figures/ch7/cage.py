@@ -43,8 +43,8 @@ _MAPS = ("coordinates", "maps")
             caption=(
                 "The same coarse cage bent by 120 degrees. Maps follow the cage's sides closely, and where "
                 "few faces have to make the arc, each shows: faces and corners leave dents, edges fewer. "
-                "Blended linearly the bar loses more volume. Mean value coordinates keep the kinks of the "
-                "cage; Green coordinates are the smoothest, and leave its boundary."
+                "Blended linearly the bar loses more volume. Mean value coordinates follow the kinks of the "
+                "cage; Green coordinates stretch the least, and leave the cage's sides."
             ),
             params={"view": "compare", "example": "bar", "bend": 120.0, "twist": 0.0},
         ),

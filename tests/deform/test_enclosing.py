@@ -118,3 +118,19 @@ def test_bad_input_is_refused_by_name():
     ):
         with pytest.raises(ValueError, match=rf"^enclosing\.cage: [^\n]*{words}[^\n]*$"):
             enclosing.cage(*arguments, **named)
+
+
+def test_a_kept_cage_is_the_cage(tmp_path, monkeypatch):
+    monkeypatch.setenv("LIETOOL_CACHE_DIR", str(tmp_path))
+    x = ball(20)
+    made = enclosing.cage(x, faces=40)
+    for _ in range(2):
+        kept = enclosing.kept(x, faces=40)
+        assert np.array_equal(kept.vertices, made.vertices) and np.array_equal(kept.faces, made.faces)
+        assert (kept.margin, kept.components) == (made.margin, made.components)
+    assert len(list((tmp_path / "cages").iterdir())) == 1
+    # Other points, another margin, another number of faces are other cages.
+    enclosing.kept(x * (1.0, 1.0, 1.0 + 1e-9), faces=40)
+    enclosing.kept(x, faces=41)
+    enclosing.kept(x, faces=40, margin=0.03)
+    assert len(list((tmp_path / "cages").iterdir())) == 4

@@ -139,7 +139,7 @@ class TestPlates:
         base = {"example": "bar", "bend": 120.0, "twist": 0.0}
         kinds = ({"by": "faces"}, {"by": "edges"}, {"coordinates": "mean-value"}, {"coordinates": "green"})
         rough = [angles(CAGE.draw(**base, **kind).mesh.vertices)[flat].mean() for kind in kinds]
-        assert rough[1] < rough[0] and max(rough[2:]) < rough[1]
+        assert max(rough[2:]) < rough[1] < rough[0]
 
 
 class TestTurns:
@@ -233,6 +233,7 @@ class TestOwn:
             ("{f}/bar.ply --cage {f}/none.obj", "a file that exists"),
             ("{f}/bar.ply --cage {f}/rest.obj --mark 44", "44 faces"),
             ("{f}/bar.ply --cage {f}/rest.obj --mark front", "mark must be auto"),
+            ("{f}/bar.ply --cage {f}/rest.obj --to {f}/to.obj --turns followed", "got followed"),
         ):
             line = self.refused(files, words)
             assert expected in line, line
