@@ -212,7 +212,7 @@ class TestMarks:
         assert np.linalg.norm(tip) == pytest.approx(1.25 * 0.5)
         plain = mesh_look.turn((0.0, 0.0, 0.0), 0.7 * x, 0.5, CAMERA)[0].points
         assert np.linalg.norm(plain, axis=1) == pytest.approx(0.5, rel=1e-3)
-        short = mesh_look.turn((0.0, 0.0, 0.0), 0.05 * x, 0.5, CAMERA)[0]
+        short = mesh_look.turn((0.0, 0.0, 0.0), 0.04 * x, 0.5, CAMERA)[0]
         assert isinstance(short, Arrow) and np.linalg.norm(short.end) == pytest.approx(0.5)
         assert mesh_look.turn((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.5, CAMERA) == []
 
