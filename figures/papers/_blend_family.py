@@ -16,6 +16,9 @@ Array = np.ndarray
 
 TONES = (style.SHELLS[0], style.SHELLS[2], style.SHELLS[1], style.ROUTE_2, style.ROUTE_1, style.BETWEEN_EDGE)
 """Of the targets, in their order; a seventh begins again."""
+_FACING = (0.5, 0.866, 0.25)
+# From here the thorns of the two targets lean to different sides, though the camera is not in the plane of
+# either, and what is not cancelled, which lies between them, is seen from the side.
 KEPT = 4
 """So many families, and ways of blending them, are kept, for the pictures of a film."""
 
@@ -58,6 +61,8 @@ class Family:
         Where their stripes are.
     maps : ndarray, shape (N, m, 3, 3), optional
         The linear maps of the faces, where they are known; else those with the normals.
+    thorn : Thorn, optional
+        How the targets are made, if they are a thorn's.
     """
 
     names: tuple[str, ...]
@@ -73,6 +78,7 @@ class Family:
     solid: solids.Solid | None = None
     cut: cutting.Cut | None = None
     maps: Array | None = None
+    thorn: Thorn | None = None
     _prepared: dict[str, shape_blend.Prepared] = field(default_factory=dict)
 
     def __len__(self) -> int:
@@ -145,13 +151,14 @@ def _thorned(
         F,
         surface.Mesh(ball.vertices, F),
         np.arange(len(ball.vertices)),
-        (1.0, 0.2, 0.25),
+        _FACING,
         ground=False,
         up=up,
         pins=(int(np.argmin(ball.vertices[:, 2])),),
         solid=ball,
         cut=stripes,
         maps=solids.thorn_maps(ball, *own)[:, F].mean(axis=2) if stated else None,
+        thorn=Thorn(angle, shear, stretch, stated),
     )
 
 

@@ -11,30 +11,34 @@ from lietool.render.camera import Box, Camera, project
 from lietool.render.scene import Label, Lines, Picture, Record, View
 
 from . import _blend_look as look
+from . import _blend_plan as plan
 from ._blend_family import Family
 
 Array = np.ndarray
 
 NAMES = {
-    "phi_so": r"ours, $\varphi_{so}$",
-    "phi_se": r"ours, $\varphi_{se}$",
-    "alexa": "Alexa, SAM",
-    "polar_quaternion": "polar + quaternion",
-    "dual_quaternion": "polar + dual quaternion",
-    "linear": "linear",
+    "phi_so": r"$\varphi_{so}$",
+    "phi_se": r"$\varphi_{se}$",
+    "alexa": "matrix logarithm",
+    "polar_quaternion": "quaternions",
+    "dual_quaternion": "dual quaternions",
+    "linear": "matrices",
 }
 _BESIDE = ("phi_so", "alexa", "polar_quaternion")
 _LEFT, _WIDE = 36.0, 1128.0
-_ABOVE, _BELOW, _TALL, _LOW = 494.0, 64.0, 366.0, 330.0
-# The lower titles' base line, and the legend's.
-_SECOND, _LAST = 442.0, 30.0
+_ABOVE, _BELOW, _TALL, _LOW = 494.0, 78.0, 366.0, 330.0
+# The lower titles' base line.
+_SECOND = 456.0
 # So many shapes stand in the upper row at most.
 _MOST = 6
-# Of the thorn above this height the lean is told; by lines and an arc so long.
+# Of the thorn above this height the lean is told; by lines and an arc so long, from its tip.
 _UPPER = 2.0
 # So far a shape may reach out of its box, page units.
 _BEYOND = 12.0
-_PLUMB, _ARC = 0.84, 0.64
+_TOP = 2.6
+_PLUMB, _ARC = 0.42, 0.32
+# The vertical through a tip that points down is seen above what it hangs from.
+_OVER = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +57,13 @@ def drawing(family: Family, way: str, weights: Array) -> Drawing:
     many = min(len(family) + 1, _MOST)
     # The thorn's boxes are taller: of them only a tip comes near to the titles.
     tall = _TALL if _has_tip(family) else _LOW
-    above = mesh_page.grid(1, many, (_LEFT, _ABOVE, _WIDE, tall))
-    below = mesh_page.grid(1, len(shown), (_LEFT, _BELOW, _WIDE, tall))
+    left = _LEFT + (plan.ROOM if _has_plan(family) else 0.0)
+    above = mesh_page.grid(1, many, (left, _ABOVE, _WIDE, tall))
+    below = mesh_page.grid(1, len(shown), (left, _BELOW, _WIDE, tall))
     shapes = [family.rest, *family.targets[: many - 1]]
     upright = [family.upright(X) for X in shapes]
     if _has_tip(family):
-        upright.append(family.upright(np.array([[0.0, 0.0, _UPPER + _PLUMB]])))
+        upright.append(family.upright(np.array([[0.0, 0.0, _TOP + _PLUMB]])))
     narrow = min(above[0][2], below[0][2])
     camera = mesh_page.together(upright, family.direction, (0.0, 0.0, narrow, tall), 1.06)
     colours = [look.REST, *map(look.target, range(many - 1))]
@@ -67,9 +72,13 @@ def drawing(family: Family, way: str, weights: Array) -> Drawing:
         for X, own, box in zip(shapes, colours, above, strict=True)
     ]
     heads = []
+    if _has_plan(family):
+        views += _plans(family, camera, list(zip(shapes, above, strict=True)))
     for one, box in zip(shown, below, strict=True):
         own = _camera(family, one, camera, box)
         views += _views(family, one, own, box)
+        if _has_plan(family) and one.blended:
+            views.append(View(tuple(plan.plan(family, camera, box, one.blended.vertices, style.INK))))
         scale = "" if own is camera else rf" (${camera.height / own.height:.2g} : 1$)"
         heads.append(look.line(NAMES[one.way] + scale, box[0] + box[2] / 2.0, _SECOND, style.TITLE_TEXT))
     names = ["rest", *_named(family, many - 1)]
@@ -88,6 +97,22 @@ def drawing(family: Family, way: str, weights: Array) -> Drawing:
 def _has_tip(family: Family) -> bool:
     """Whether there is a thorn, whose lean is told."""
     return family.solid is not None and "tip" in family.solid.marks
+
+
+def _has_plan(family: Family) -> bool:
+    """Whether its shapes are seen from above too."""
+    return _has_tip(family) and family.up == "z" and family.thorn is not None
+
+
+def _plans(family: Family, camera: Camera, shapes: list[tuple[Array, Box]]) -> list[View]:
+    """Rest and targets from above, with the turns of the targets."""
+    views = []
+    for k, (X, box) in enumerate(shapes):
+        edge = look.target(k - 1)[2] if k else style.MUTED
+        records = plan.plan(family, camera, box, X, edge)
+        made = plan.turned(family, box, k - 1, family.thorn.angle) if k and family.thorn else plan.named(box)
+        views.append(View((*made, *records)))
+    return views
 
 
 def _row(way: str) -> list[str]:
@@ -146,20 +171,18 @@ def numbers(family: Family, shown: list[Shown], weights: Array) -> dict[str, obj
     return found
 
 
-def axis(family: Family, X: Array) -> tuple[Array, Array]:
-    """Where the upper part of the thorn begins, and whereto its axis points: as an affine map of it says."""
+def axis(family: Family, X: Array) -> Array:
+    """Whereto the axis of the upper part of the thorn points: as an affine map of that part says."""
     rest = family.rest
     upper = family.solid.of("thorn") & (rest[:, 2] > _UPPER) if family.solid else np.ones(len(rest), bool)
     V, U = rest[upper], X[upper]
-    V1 = np.column_stack([V, np.ones(len(V))])
-    A = np.linalg.lstsq(V1, U, rcond=None)[0]
-    along = A[2] / np.linalg.norm(A[2])
-    return np.array([0.0, 0.0, _UPPER, 1.0]) @ A, along
+    A = np.linalg.lstsq(np.column_stack([V, np.ones(len(V))]), U, rcond=None)[0]
+    return A[2] / np.linalg.norm(A[2])
 
 
 def lean(family: Family, X: Array) -> float:
     """The angle in degrees between the axis of the upper thorn and the vertical."""
-    _, along = axis(family, X)
+    along = axis(family, X)
     return round(float(np.degrees(np.arctan2(np.hypot(*along[:2]), along[2]))), 6)
 
 
@@ -179,31 +202,25 @@ def _views(family: Family, one: Shown, camera: Camera, box: Box) -> list[View]:
 
 
 def _leaning(family: Family, X: Array) -> list[Record]:
-    """The vertical through the thorn, its axis, and the angle between them."""
-    base, along, up = family.upright(np.stack([*axis(family, X), np.array([0.0, 0.0, 1.0])]))
+    """At the tip of the thorn the vertical, the axis of its upper part, and the angle between them."""
+    tip = plan.tip(family, X)
+    tip, along, up = family.upright(np.stack([tip, axis(family, X), np.array([0.0, 0.0, 1.0])]))
     angle = np.radians(lean(family, X))
-    records: list[Record] = [
-        Lines(np.stack([base, base + _PLUMB * up]), style.INK, style.THIN, dash=(9.0, 6.0))
-    ]
+    text = rf"${np.degrees(angle):.0f}^{{\circ}}$"
+    long = _PLUMB if along @ up > 0.0 else _OVER
+    records: list[Record] = [Lines(np.stack([tip, tip + long * up]), style.INK, style.THIN, dash=(9.0, 6.0))]
     if angle < np.radians(0.5):
-        return records
+        end = tip + _PLUMB * up
+        return [*records, Label(text, end, style.MARK, style.TEXT, (16.0, -24.0), "lc", room=45.0)]
     across = (along - (along @ up) * up) / np.linalg.norm(along - (along @ up) * up)
     turn = np.linspace(0.0, angle, 40)[:, None]
     arc = np.cos(turn) * up + np.sin(turn) * across
     half = arc[len(arc) // 2]
     return [
         *records,
-        Lines(np.stack([base, base + _PLUMB * along]), style.MARK, style.THIN),
-        Lines(base + _ARC * arc, style.MARK, style.EDGE),
-        Label(
-            rf"${np.degrees(angle):.0f}^{{\circ}}$",
-            base + _ARC * half,
-            style.MARK,
-            style.TEXT,
-            (26.0, 6.0) if half[1] >= 0.0 else (-26.0, 6.0),
-            "lc" if half[1] >= 0.0 else "rc",
-            room=45.0,
-        ),
+        Lines(np.stack([tip, tip + _PLUMB * along]), style.MARK, style.EDGE),
+        Lines(tip + _ARC * arc, style.MARK, style.EDGE),
+        Label(text, tip + _PLUMB * half, style.MARK, style.TEXT, (20.0, -6.0), "lc", room=45.0),
     ]
 
 
@@ -220,13 +237,15 @@ def _short(name: str) -> str:
 def _legend(family: Family, weights: Array, above: int, shown: list[Shown]) -> Label:
     if len(weights) <= 4:
         names = ", ".join(f"w_{k + 1}" for k in range(len(weights)))
-        text = f"below: blended with ${names} = {look.numbers(weights)}$"
+        text = f"below: ${names} = {look.numbers(weights)}$"
         if np.ptp(weights) == 0.0:
-            text = f"below: blended with ${names.replace(', ', ' = ')} = {weights[0]:.2g}$"
+            text = f"below: ${names.replace(', ', ' = ')} = {weights[0]:.2g}$"
     else:
         text = f"below: blended with {len(weights)} weights of sum ${weights.sum():.2f}$"
     if above < len(family):
         text += f"; {len(family) - above} more targets are not drawn"
     if lacking := max(int(one.blended.fallback.sum()) for one in shown if one.blended):
         text += f"; hatched: {lacking} faces without a logarithm"
-    return look.line(text, 600.0, _LAST)
+    if family.solid is not None and _has_tip(family):
+        text += "; maps known" if family.maps is not None else "; maps from faces with normals"
+    return mesh_page.legend(text)

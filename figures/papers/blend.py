@@ -23,22 +23,24 @@ _LED = ("view", "controller", "ray")
             equations=("K 9",),
             caption=(
                 "Each face with its normal has a linear map to either target, in which the large thorn is "
-                "turned by 134 degrees, one way and the other, and slanted. Blended with 0.8 of both, the "
-                "turns should cancel. By ours the thorn stands, and leans by 16 degrees; by the logarithm in "
-                "Aff (Alexa; SAM), which mixes turn and slant, by 32; by polar parts and quaternions it "
-                "folds over. That ours leans at all comes from the maps: a normal does not tell a slant, so "
-                "that the faces seem to be turned about other axes too."
+                "slanted (dashed, from above), and then turned by 134 degrees, one way and the other; the "
+                "arrow goes to its tip. The slants are opposed, so that blended with 0.8 of both, turns and "
+                "slants should cancel. By phi_so the thorn leans by 16 degrees, no more than a target (18); "
+                "by the logarithm in Aff (Alexa; SAM), which mixes turn and slant, by 32; the camera sees "
+                "half of this. By polar parts and quaternions it folds over. That it leans by phi_so at all "
+                "comes from the maps: a normal does not tell a slant, so that the faces seem to be turned "
+                "about other axes too."
             ),
         ),
         "K3a2": Plate(
             title="The same thorn, its maps known",
             equations=("K 9",),
             caption=(
-                "The figure before with the maps by which the targets were made, which turn about the "
-                "thorn's own axis alone. By ours the turns and the slants cancel and the thorn stands "
-                "upright; by the logarithm in Aff it leans by 30 degrees. By quaternions it stands as well, "
-                "since here their vector parts cancel: what folds the thorn in the figure before is what "
-                "faces with normals add."
+                "The same targets with the maps by which they were made, which turn about the thorn's own "
+                "axis alone. By phi_so the turns and the opposed slants cancel: the thorn stands upright. By "
+                "the logarithm in Aff it leans by 30 degrees. By quaternions it stands as well, since here "
+                "their vector parts cancel: what folds the thorn, where maps are taken from faces, is what "
+                "normals add."
             ),
             params={"maps": "stated"},
         ),
@@ -139,7 +141,7 @@ def blend(
 ) -> Drawing:
     """Shapes with the same faces blended by weights: three ways compared, a population, a controller.
 
-    What to look for: two turns of a thorn that should cancel do so by ours, where
+    What to look for: two turns of a thorn that should cancel do so by phi_so, where
     the logarithm of affine maps leaves it slanted and quaternions fold it over;
     faces for which there is no logarithm are hatched and counted. Mixtures of
     animals are animals. A controller at a corner gives that target exactly, and
