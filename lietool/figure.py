@@ -18,17 +18,17 @@ from typing import Any
 
 from lietool import paths
 from lietool.declaration import RESERVED as RESERVED
-from lietool.declaration import Drawing as Drawing
 from lietool.declaration import Figure as Figure
-from lietool.declaration import FigureError as FigureError
-from lietool.declaration import Plate as Plate
-from lietool.declaration import Time as Time
-from lietool.declaration import Tolerance as Tolerance
 from lietool.declaration import figure as figure
 from lietool.parameter import Param as Param
 from lietool.parameter import Parameter as Parameter
 from lietool.parameter import nearest as nearest
 from lietool.parameter import quoted as quoted
+from lietool.plate import Drawing as Drawing
+from lietool.plate import FigureError as FigureError
+from lietool.plate import Plate as Plate
+from lietool.plate import Time as Time
+from lietool.plate import Tolerance as Tolerance
 
 # Also set by `lietool --project`: spawned workers inherit it.
 PROJECT = "LIETOOL_PROJECT"

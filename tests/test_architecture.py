@@ -42,8 +42,9 @@ RULES = {
     "__main__": _rule("cli"),
     "figures": _rule("paths"),
     "parameter": _rule(),
-    "declaration": _rule("parameter"),
-    "figure": _rule("declaration parameter paths", ours_lazily="figures"),
+    "plate": _rule(),
+    "declaration": _rule("parameter plate"),
+    "figure": _rule("declaration parameter paths plate", ours_lazily="figures"),
     "cli": _rule("figure paths lietool", "click", "rich", ours_lazily="verbs"),
     "lie": _rule("lie", "numpy", "scipy"),
     # Solids that take seconds to make are kept in the cache folder, and written there whole.
