@@ -164,7 +164,7 @@ def _checked(
         )
     chapter = "" if file.parent.name == "figures" else file.parent.name
     name = function.__name__.replace("_", "-")
-    read = tuple(_read_signature(function))
+    read = _parameter.together(_read_signature(function))
     checked = Figure(name, function, read, plates, time, file, chapter, summary, help_text, mesh)
     _check_only(checked)
     _check_positional(checked)
@@ -195,15 +195,6 @@ def _check_only(figure: Figure) -> None:
     for what, only in said.items():
         if only and (len(only) < 2 or not set(only[1:]) <= set(choices.get(only[0], ()))):
             raise ValueError(f"{what} parameter and some of its choices; got {only}. Correct it")
-    # What is not given must be seen to be so.
-    empty = {parameter.name for parameter in figure.parameters if parameter.default in (None, (), "")}
-    for parameter in figure.parameters:
-        if not set(parameter.param.unless) <= empty - {parameter.name}:
-            got = parameter.param.unless
-            raise ValueError(
-                f"parameter {parameter.name}: unless must be other parameters without a default; got {got}. "
-                "Correct it"
-            )
 
 
 def _check_positional(figure: Figure) -> None:

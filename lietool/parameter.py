@@ -261,6 +261,20 @@ def read(name: str, annotation: Any, default: Any) -> Parameter:
         raise ValueError(f"has a default that {error}. Correct the default or the range") from None
 
 
+def together(read: Iterable[Parameter]) -> tuple[Parameter, ...]:
+    """Return the parameters of a signature; ValueError where one names others that will not do."""
+    parameters = tuple(read)
+    # What is not given must be seen to be so.
+    empty = {parameter.name for parameter in parameters if parameter.default in (None, (), "")}
+    for parameter in parameters:
+        if not set(parameter.param.unless) <= empty - {parameter.name}:
+            raise ValueError(
+                f"parameter {parameter.name}: unless must be other parameters without a default; "
+                f"got {parameter.param.unless}. Correct it"
+            )
+    return parameters
+
+
 def _kind(base: Any) -> tuple[str, int, tuple[str, ...]]:
     """Kind, length and choices of a type."""
     arguments = get_args(base)

@@ -13,7 +13,7 @@ from itertools import pairwise
 import moderngl
 import numpy as np
 
-from lietool.render import compose, context, labels, passes
+from lietool.render import compose, context, labels, nearby, passes
 from lietool.render.batches import Batch, Lens, batches, check_measures, extent
 from lietool.render.camera import Box, Page, project
 from lietool.render.scene import Picture, View
@@ -188,9 +188,10 @@ def _prepare(view: View, sheet: _Sheet) -> _Prepared:
     if not (np.isfinite(box).all() and box[2] > 0.0 and box[3] > 0.0):
         raise ValueError(f"draw.render: View.box must be x, y and a width and height above 0; got {box}")
     flat = isinstance(view.camera, Page)
-    lens = Lens(view.camera, box, sheet.unit, sheet.theme)
     for record in view.records:
         check_measures(record)
+    view = nearby.view(view)
+    lens = Lens(view.camera, box, sheet.unit, sheet.theme)
     found = [batch for record in view.records for batch in batches(record, lens)]
     opaque = [] if flat else [batch for batch in found if batch.opaque]
     rest = found if flat else [batch for batch in found if not batch.opaque]

@@ -286,6 +286,33 @@ class TestLines:
         assert ink(image).sum() == pytest.approx(stroke(20, 4) + stroke(30, 4), rel=0.01)
         assert ink(image)[10, 45] == 0.0
 
+    @pytest.mark.parametrize(
+        ("scale", "shift"), [(1e40, 0.0), (1e-40, 0.0), (1.0, 1e9), (1e60, 3e62), (1e-3, 5e3), (2.0**-8, 0.0)]
+    )
+    def test_the_unit_and_the_origin_do_not_matter(self, scale, shift):
+        def image(scale: float, shift: float) -> np.ndarray:
+            def put(*points: tuple[float, float, float]) -> np.ndarray:
+                return scale * np.array(points) + shift
+
+            target = tuple((scale * np.zeros(3) + shift).tolist())
+            camera = Camera((1.0, 0.7, 0.5), target=target, height=2.0 * scale)
+            records = (
+                Surface(
+                    put((0, -0.6, -0.6), (0, 0.6, -0.6), (0, 0.6, 0.6), (0.3, -0.6, 0.6)), SQUARE, "#c06020"
+                ),
+                Lines(
+                    put((0.5, -0.8, 0), (0.5, 0.8, 0), (np.nan,) * 3, (0.5, 0, 0.8), (0.5, 0, -0.8)),
+                    "#204080",
+                ),
+                Points(put((0.7, 0.3, 0.3)), "#208040"),
+                Arrow(put((0, 0, 0))[0], put((0.6, -0.6, 0.4))[0], "#802080", 0.05 * scale),
+                Tube(put((0, -0.5, 0.5), (0, 0, 0.8), (0, 0.5, 0.5)), "#808020", 0.05 * scale),
+                Frame(np.eye(3), put((0.3, 0.3, -0.5))[0], 0.4 * scale, 0.03 * scale),
+            )
+            return seen(*records, camera=camera).astype(int)
+
+        assert (np.abs(image(scale, shift) - image(1.0, 0.0)).max(axis=2) > 24).mean() < 0.004
+
     def test_nothing_to_draw(self):
         for points in (np.zeros((0, 3)), [(np.nan,) * 3] * 3, [(5, 5, 0)], [(np.nan,) * 3, (5, 5, 0)]):
             assert page(Lines(points, "#000000")).min() == 255
@@ -434,7 +461,7 @@ class TestRefused:
             ({"faces": [(0, 1, 3)]}, "faces must be indices of its 3 vertices, from 0; got 0 to 3"),
             ({"faces": [(0, 1, -1)]}, "faces must be indices of its 3 vertices, from 0; got -1 to 1"),
             ({"faces": [(0, 1, 1.5)]}, r"faces must be whole numbers \(n, 3\); got float64 \(1, 3\)"),
-            ({"material": "wood"}, "material must be one of flat, matte, glass, soft; got 'wood'"),
+            ({"material": "wood"}, "material must be one of flat, matte, glass, soft, shadow; got 'wood'"),
         ],
     )
     def test_a_surface_that_is_none(self, changed, message):
