@@ -1,5 +1,6 @@
 """Weights from a controller: a point in a polygon whose corners are the shapes, and beyond it."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from lietool.deform import controller
 from lietool.figure import Drawing
 from lietool.render import mesh_page, style
-from lietool.render.camera import Box, Camera
+from lietool.render.camera import Box, Camera, project
 from lietool.render.scene import Label, Lines, Picture, Points, Record, View
 
 from . import _blend_look as look
@@ -18,13 +19,20 @@ Array = np.ndarray
 
 _PLANE: Box = (36.0, 60.0, 640.0, 780.0)
 _LARGE: Box = (690.0, 130.0, 474.0, 690.0)
-_MIDDLE, _RADIUS = (346.0, 452.0), 145.0
-_SMALL = 190.0
-# How far from the middle the shapes of the corners stand, in radii.
-_OUT = 1.76
+_MIDDLE, _RADIUS = (356.0, 436.0), 158.0
+_SMALL = 200.0
+# From corners to their shapes; from feet to the base line of a weight.
+_GAP, _UNDER = 30.0, 44.0
 _MARK = 13.0
+# Lines to corners: of weight 0, and how much thicker of weight 1.
+_HAIR, _THICK = 1.0, 12.0
 _KEPT = 8
-_ABOVE: Box = (36.0, 340.0, 1088.0, 490.0)
+# Where shapes along a ray stand: from left to right, their middle and height, the room between them.
+_ROW, _HIGH, _BETWEEN = (44.0, 1120.0), (606.0, 370.0), 30.0
+# A column has room for its texts.
+_TEXT = 306.0
+# The polygons below them.
+_GLYPH_AT, _GLYPH = 264.0, 90.0
 
 
 def polygon(family: Family) -> controller.Controller:
@@ -57,7 +65,7 @@ def drawing(family: Family, way: str, reach: float, phase: float) -> Drawing:
     camera = _around_path(family, way, reach)
     fill = look.mixed(weights, look.points(family))
     large = look.creature(family, made.vertices, camera, fill, style.BETWEEN, style.GREYS[0])
-    views = [View(tuple(_plane(by, at, reach))), *_corners(family, by, weights)]
+    views = [View(tuple(_plane(by, at))), *_corners(family, by, weights)]
     views.append(View((Points(_page(at), style.MARK, _MARK),)))
     views.append(View(tuple(large), camera, _LARGE))
     views.append(View(tuple(mesh_page.titles([_PLANE, _LARGE], ["controller", "blended shape"]))))
@@ -88,15 +96,18 @@ def _page(p: Array) -> Array:
     return np.pad(np.asarray(_MIDDLE) + _RADIUS * np.atleast_2d(p), ((0, 0), (0, 1)))
 
 
-def _plane(by: controller.Controller, at: Array, reach: float) -> list[Record]:
-    """The polygon, the closed path of a film, and the point on it."""
+def _plane(by: controller.Controller, at: Array) -> list[Record]:
+    """The polygon, and from a point in it lines to its corners, as thick as their weights."""
     rim = np.concatenate([by.corners, by.corners[:1]])
-    path = np.stack([position(reach, t) for t in np.linspace(0.0, 360.0, 181)])
-    spokes = [Lines(_page(np.stack([at, c])), style.RULE, style.THIN) for c in by.corners]
+    weights = by.weights(at)
+    shares = np.append(1.0 - weights.sum(), weights)
+    spokes = [
+        Lines(_page(np.stack([at, c])), style.MUTED, _HAIR + _THICK * min(max(share, 0.0), 1.0))
+        for c, share in zip(by.corners, shares, strict=True)
+    ]
     return [
         *spokes,
         Lines(_page(rim), style.INK, style.EDGE),
-        Lines(_page(path), style.MARK, style.THIN, 0.7, dash=(9.0, 7.0)),
         *(
             Points(_page(c), style.BEFORE_EDGE if k == 0 else look.tone(k - 1), 11.0, style.INK, False)
             for k, c in enumerate(by.corners)
@@ -108,23 +119,28 @@ def _corners(family: Family, by: controller.Controller, weights: Array) -> list[
     """The shapes at the corners, each with its weight."""
     shapes = [family.rest, *family.targets]
     shares = np.append(1.0 - weights.sum(), weights)
-    boxes = []
-    for c in by.corners:
-        x, y, _ = _page(_OUT * c)[0]
-        boxes.append((x - _SMALL / 2.0, y - _SMALL / 2.0 + 16.0, _SMALL, _SMALL))
+    boxes = [(0.0, 0.0, _SMALL, _SMALL)] * len(shapes)
     cameras = mesh_page.each([family.upright(X) for X in shapes], family.direction, boxes, 1.12)
     views = []
     for k, (X, camera, box) in enumerate(zip(shapes, cameras, boxes, strict=True)):
+        seen = project(camera, box, family.upright(X))[:, :2]
+        low, high = seen.min(axis=0), seen.max(axis=0)
+        # What is to stand at a corner: the shape, and its weight below it.
+        low[1] -= _UNDER + 8.0
+        x, y = _page(by.corners[k])[0, :2] - low + _beside(by.corners[k], high - low)
         colours = look.REST if k == 0 else look.target(k - 1)
-        views.append(View(tuple(look.creature(family, X, camera, *colours)), camera, box))
-        text = rf"$w_{{{k}}} = {look.number(shares[k])}$"
-        if by.corners[k, 1] > 0.5:
-            # Under the one above the polygon is its corner.
-            label = Label(text, (box[0] + box[2], box[1] + 0.5 * box[3], 0.0), style.INK, anchor="lc")
-        else:
-            label = look.line(text, box[0] + box[2] / 2.0, box[1] - 14.0)
-        views.append(View((label,)))
+        views.append(View(tuple(look.creature(family, X, camera, *colours)), camera, (x, y, *box[2:])))
+        middle = x + 0.5 * (low[0] + high[0])
+        views.append(View((look.line(rf"$w_{{{k}}} = {look.number(shares[k])}$", middle, y + low[1] + 8.0),)))
     return views
+
+
+def _beside(corner: Array, size: Array) -> Array:
+    """Where the left lower corner of a box lies that is outside of a corner of the polygon, one gap away."""
+    out = corner / np.linalg.norm(corner)
+    # From the box's middle to its rim in this direction.
+    reach = np.min(0.5 * size / np.maximum(np.abs(out), 1e-9))
+    return (reach + _GAP) * out - 0.5 * size
 
 
 def ray(family: Family, way: str, reach: float, phase: float) -> Drawing:
@@ -137,22 +153,19 @@ def ray(family: Family, way: str, reach: float, phase: float) -> Drawing:
     far = np.stack([look.distances(family, one.vertices) for one in made])
     # The target that the way leads nearest to.
     led = int(np.argmax(weights[1]))
-    boxes = mesh_page.grid(1, len(made), _ABOVE)
-    camera = _camera([one.vertices for one in made], family, boxes[0])
+    camera, boxes, columns = _side_by_side([one.vertices for one in made], family)
     views, page = [], []
-    for k, (one, box) in enumerate(zip(made, boxes, strict=True)):
+    for k, (one, box, column) in enumerate(zip(made, boxes, columns, strict=True)):
         fill = look.mixed(weights[k], look.points(family))
         records = look.creature(family, one.vertices, camera, fill, style.BETWEEN, style.GREYS[0])
         views.append(View(tuple(records), camera, box))
-        middle = box[0] + box[2] / 2.0
-        page += look.glyph(list(weights[k : k + 1]), (middle, 230.0), 84.0, True, 10.0)
-        page.append(look.line(rf"$\mathbf{{w}} = ({look.numbers(weights[k])})$", middle, 94.0))
-        said = (
-            f"{100.0 * far[k, led]:.0f} % away from target {led + 1}" if far[k, led] else f"target {led + 1}"
-        )
-        page.append(look.line(said, middle, 48.0))
+        middle = column[0] + column[2] / 2.0
+        page += _way(by, ats[k], weights[k], (middle, _GLYPH_AT))
+        page.append(look.line(rf"$\mathbf{{w}} = ({look.numbers(weights[k])})$", middle, 98.0))
+        away = f"off by up to {far[k, led]:.2f}"
+        page.append(look.line(away if far[k, led] else f"target {led + 1}", middle, 52.0))
     rim = "at the corner" if np.max(weights[1]) == 1.0 else "at the rim"
-    page += mesh_page.titles(boxes, ["half way", rim, f"{reach:g} times as far"])
+    page += mesh_page.titles(columns, ["half way", rim, f"{reach:g} times as far"])
     numbers = {
         "positions": ats,
         "weights": weights,
@@ -161,6 +174,52 @@ def ray(family: Family, way: str, reach: float, phase: float) -> Drawing:
         "flipped": [one.flips for one in made],
     }
     return Drawing(Picture((*views, View(tuple(page)))), numbers)
+
+
+def _side_by_side(shapes: list[Array], family: Family) -> tuple[Camera, list[Box], list[Box]]:
+    """One camera for shapes on one ground, as large as the page allows; their boxes, and their columns."""
+    upright = [family.upright(X) for X in shapes]
+    full = (0.0, 0.0, _ROW[1] - _ROW[0], _HIGH[1])
+    camera = mesh_page.together(upright, family.direction, full, 1.02)
+    seen = [project(camera, full, U)[:, 0] for U in upright]
+    wide = np.array([np.ptp(x) for x in seen])
+    room = full[2] - _BETWEEN * (len(shapes) - 1)
+    # The largest scale at which all columns fit; none is narrower than its texts.
+    scales = np.linspace(1.0, 0.2, 161)
+    fits = [bool(np.maximum(s * wide, _TEXT).sum() <= room) for s in scales]
+    scale = float(scales[int(np.argmax(fits))])
+    camera = replace(camera, height=camera.height / scale)
+    widths = np.maximum(scale * wide, _TEXT)
+    widths += (room - widths.sum()) / len(widths)
+    left = _ROW[0] + np.concatenate([[0.0], np.cumsum(widths + _BETWEEN)[:-1]])
+    low = _HIGH[0] - 0.5 * full[3]
+    boxes = []
+    for U, x, width in zip(upright, left, widths, strict=True):
+        span = project(camera, full, U)[:, 0]
+        boxes.append((float(x + 0.5 * width - 0.5 * (span.min() + span.max())), low, full[2], full[3]))
+    columns = [(float(x), low, float(w), full[3]) for x, w in zip(left, widths, strict=True)]
+    return camera, boxes, columns
+
+
+def _way(by: controller.Controller, at: Array, weights: Array, middle: tuple[float, float]) -> list[Record]:
+    """The polygon with its corners numbered, and the way from its middle to where the ball is."""
+    start = np.array([*middle, 0.0])
+    end = start + _GLYPH * np.append(at, 0.0)
+    records: list[Record] = [
+        Lines(np.stack([start, end]), style.MARK, style.EDGE),
+        Points(start[None], style.MARK, 4.0),
+        *look.glyph([weights], middle, _GLYPH, True, 10.0),
+    ]
+    for k, corner in enumerate(by.corners):
+        place = start + _GLYPH * np.append(corner, 0.0)
+        # Beside the corner, not on a way that goes through it.
+        offset = (
+            (20.0, 10.0 if corner[1] > 0.0 else -10.0)
+            if abs(corner[0]) < 0.5
+            else (8.0 * np.sign(corner[0]), -30.0)
+        )
+        records.append(Label(rf"${k}$", place, style.INK, style.SMALL_TEXT, offset, "cc"))
+    return records
 
 
 def alone(family: Family, way: str, full: Array, grown: float) -> Drawing:

@@ -106,7 +106,10 @@ def glyph(
     rim = np.concatenate([at, at[:1]])
     return [
         Lines(_flat(rim), style.INK, style.THIN),
-        *(Points(_flat(p[None]), t, 0.8 * dot, style.INK, False) for p, t in zip(at, tones, strict=True)),
+        *(
+            Points(_flat(p[None]), t, max(0.8 * dot, 6.0), style.INK, False)
+            for p, t in zip(at, tones, strict=True)
+        ),
         Points(_flat(np.stack([share @ at for share in shares])), style.MARK, dot),
     ]
 

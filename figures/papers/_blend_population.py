@@ -14,9 +14,9 @@ from ._blend_family import Family
 Array = np.ndarray
 
 # Of the parents, and of their variations.
-_LEFT, _RIGHT = (36.0, 70.0, 236.0, 750.0), (300.0, 70.0, 864.0, 750.0)
+_LEFT, _RIGHT = (30.0, 96.0, 250.0, 726.0), (300.0, 96.0, 870.0, 726.0)
 _MOST = 5
-_GLYPH = 25.0
+_GLYPH = 31.0
 
 
 def drawing(family: Family, way: str, count: int, seed: int, concentration: float, grown: float) -> Drawing:
@@ -29,12 +29,12 @@ def drawing(family: Family, way: str, count: int, seed: int, concentration: floa
     left = mesh_page.grid(len(parents), 1, _LEFT)
     right = mesh_page.grid(*_rows(count), _RIGHT)[:count]
     views = []
-    for k, (X, camera, box) in enumerate(
-        zip(parents, _cameras(family, list(parents), left), left, strict=True)
-    ):
+    # One scale for all.
+    shapes = [*parents, *(one.vertices for one in full)]
+    cameras = _cameras(family, shapes, [*left, *right])
+    for k, (X, camera, box) in enumerate(zip(parents, cameras, left, strict=False)):
         views.append(View(tuple(look.creature(family, X, camera, *look.target(k))), camera, box))
-    cameras = _cameras(family, [one.vertices for one in full], right)
-    for one, w, camera, box in zip(made, grown * own, cameras, right, strict=True):
+    for one, w, camera, box in zip(made, grown * own, cameras[len(left) :], right, strict=True):
         fill = look.mixed(w, look.points(family))
         records = look.creature(family, one.vertices, camera, fill, style.BETWEEN, style.GREYS[0])
         views.append(View(tuple(records), camera, box))
@@ -43,10 +43,10 @@ def drawing(family: Family, way: str, count: int, seed: int, concentration: floa
     for w, (x, y, width, _) in zip(
         [*np.eye(len(family))[: len(parents)], *own], [*left, *right], strict=True
     ):
-        middle = x + width - 30.0, y + 34.0
-        glyphs += look.glyph([w], middle, min(_GLYPH, 0.12 * width), rest=False, dot=6.0)
+        middle = x + width - 36.0, y + 28.0
+        glyphs += look.glyph([w], middle, min(_GLYPH, 0.15 * width), rest=False, dot=7.0)
     said = "" if grown == 1.0 else rf", here times ${grown:.2f}$"
-    legend = look.line(f"ball in the triangle: the weights of the shape beside it{said}", 600.0, 28.0)
+    legend = mesh_page.legend(f"ball in the triangle: the weights of the shape beside it{said}")
     numbers = {
         "weights": grown * own,
         "bounds": np.stack([look.bounds(one.vertices) for one in made]),

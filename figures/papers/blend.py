@@ -49,8 +49,9 @@ _LED = ("view", "controller", "ray")
             equations=("K 9",),
             caption=(
                 "Left, three animals with the same faces; right, twelve mixtures of them with weights at "
-                "random, not negative and of sum 1. The red dot in each triangle shows the weights, and the "
-                "colours of the three are mixed by them as the shapes are."
+                "random, not negative and of sum 1; all in one scale. The red ball in each triangle shows "
+                "the weights, and the colours of the three are mixed by them as the shapes are. The draw is "
+                "one in which no two are near to each other."
             ),
             params={"example": "animals", "view": "population"},
         ),
@@ -59,9 +60,9 @@ _LED = ("view", "controller", "ray")
             equations=("M 5",),
             caption=(
                 "The corners of the polygon stand for the shape at rest, above, and for three targets. The "
-                "mean value coordinates of the red ball are the weights, and right is the blended shape. "
-                "What the weights of the targets lack of 1 is the rest's, w_0. The dashed circle is the way "
-                "of a film."
+                "mean value coordinates of the red ball are the weights, shown by the thickness of its lines "
+                "to the corners, and right is the blended shape. What the weights of the targets lack of 1 "
+                "is the rest's, w_0."
             ),
             params={"example": "animals", "view": "controller", "phase": 215.0, "reach": 0.62},
         ),
@@ -69,10 +70,11 @@ _LED = ("view", "controller", "ray")
             title="From the middle of a controller through a corner and beyond",
             equations=("M 5",),
             caption=(
-                "The ball of the controller goes from the middle towards a corner and beyond. At the corner "
-                "the weights are (0, 0, 1) and the blended shape is that target, vertex by vertex. Beyond it "
-                "weights are outside of [0, 1], and what the target has more than the others grows further. "
-                "How far off: the farthest vertex, over the length of the rest."
+                "The ball of the controller goes from the middle towards corner 3 and beyond; w holds the "
+                "weights of corners 1 to 3, and 0 is the rest. At the corner they are (0, 0, 1) and the "
+                "blended shape is that target, vertex by vertex. Beyond it weights are outside of [0, 1], "
+                "and what the target has more than the others grows further. How far off: the farthest "
+                "vertex from target 3, in lengths of the rest."
             ),
             params={"example": "animals", "view": "ray", "phase": 0.0, "reach": 1.8},
         ),
@@ -126,7 +128,7 @@ def blend(
         Param("of the thorn (x, y, z), as logarithms", low=-0.5, high=0.5, only=_THORN, unless=_OWN),
     ] = (0.2, 0.2, 0.0),
     count: Annotated[int, Param("of variations", low=1, high=30, only=("view", "population"))] = 12,
-    seed: Annotated[int, Param("of their weights", low=0, high=10**6, only=("view", "population"))] = 7,
+    seed: Annotated[int, Param("of their weights", low=0, high=10**6, only=("view", "population"))] = 920,
     concentration: Annotated[
         float,
         Param(
