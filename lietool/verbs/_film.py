@@ -111,9 +111,9 @@ def followed(time: Time, moments: tuple[float, ...], fps: float, pace: Pace) -> 
         moments = tuple(time.start + (time.stop - time.start) * k / (count - 1) for k in range(count))
     seconds = pace.seconds or len(moments) / (pace.fps or fps)
     if not 2 <= len(moments) <= _MOST:
+        remedy = "Add another, or write a .png" if len(moments) < 2 else "Change --seconds and --fps"
         raise ValueError(
-            f"a film must have 2 to {_MOST} pictures; got a sequence of {len(moments)}. "
-            "Change --seconds and --fps"
+            f"a film must have 2 to {_MOST} pictures; got a sequence of {len(moments)}. {remedy}"
         )
     return replace(time, moments=moments, frames=len(moments), seconds=seconds)
 

@@ -284,6 +284,10 @@ MISTAKES = {
         ("bar.ply", "--probe", "name=tip centre=0,0,0", "--poses", "long.toml"),
         "poses must be at most 3600 poses; got 3601 in long.toml. Leave some out",
     ),
+    "a film of one pose": (
+        ("bar.ply", "--probe", "name=tip centre=0,0,0", "--poses", "still.toml", "-o", "out.gif"),
+        "a film must have 2 to 3600 pictures; got a sequence of 1. Add another, or write a .png",
+    ),
     "a dust": (("dust.xyz",), "must have an extent above 1e-70; got "),
     "faces without area": (
         ("flat.off", "--weights", "gaussian", "--distance", "surface"),
@@ -312,15 +316,16 @@ def test_mistakes_are_one_line(mistake, bar):
         "dust.xyz": "1e-300 0 0\n0 0 0\n",
         "flat.off": "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n2 0 0\n3 0 1 2\n3 0 1 3\n",
         "away.toml": "[[pose]]\ntip = { translation = [0, 0, 1e30] }\n",
+        "still.toml": "[[pose]]\n",
         "long.toml": "[[pose]]\n" * 3601,
     }
     for name, text in files.items():
         bar.with_name(name).write_text(text)
     words, message = MISTAKES[mistake]
-    done = run(*words, "-o", "out.png", folder=bar.parent)
+    done = run(*(words if "-o" in words else (*words, "-o", "out.png")), folder=bar.parent)
     assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
     assert message in done.stderr
-    assert not bar.with_name("out.png").exists()
+    assert not list(bar.parent.glob("out.*"))
 
 
 def test_the_linear_way_takes_reflections(bar):
