@@ -55,7 +55,8 @@ class Motions:
 class Case:
     """A mesh, which of its vertices are pinned and which are handles, and what these do.
 
-    `painted` are weights (n, k) in place of computed ones; `notes` what is to be said of the mesh.
+    `painted` are weights (n, k) in place of computed ones; `notes` what is to be said of the mesh; `close`
+    the vertices that are seen close by where results are compared, all if there are none.
     """
 
     name: str
@@ -67,6 +68,7 @@ class Case:
     motions: Motions
     painted: Array | None = None
     notes: tuple[str, ...] = ()
+    close: Index | None = None
     kept: dict[str, tuple[poisson.Prepared, Array]] = field(default_factory=dict)
 
     @cached_property

@@ -23,6 +23,8 @@ _AXIS, _DEGREES, _DRAWN, _STRETCH = (0.9, 0.3, 0.3), 30.0, (0.10, -0.20, 1.00), 
 # Of the arm that is turned: from where it is free, and from where it is the handle; and how much of the arm's
 # direction the axis has that it is rolled up about, so that it does not run into itself.
 _ROOT, _HELD, _ASIDE = 0.24, 0.90, 0.22
+# From where the arm is in a picture that is taken close by.
+_SEEN = 0.16
 _FINE = 400
 # The systems that were factored: they do not depend on how the handles are moved.
 _KEPT: dict[str, dict] = {"head": {}, "arm": {}}
@@ -60,8 +62,8 @@ def by_arm(degrees: float, motion: str) -> Case:
     x = np.radians(degrees) * u / np.sqrt(np.sum(u**2))
     go = _rolled(line, x, centre) if motion == "roll" else np.zeros(3)
     motions = Motions(centre[None], x[None], np.zeros((1, 3, 3)), go[None])
-    mesh = Mesh(s.vertices, s.faces)
-    return Case("arm", mesh, _arm_look(), pins, ("tip",), (held,), motions, kept=_KEPT["arm"])
+    mesh, close = Mesh(s.vertices, s.faces), np.flatnonzero(arm & (s.along > _SEEN))
+    return Case("arm", mesh, _arm_look(), pins, ("tip",), (held,), motions, close=close, kept=_KEPT["arm"])
 
 
 def _rolled(line: Array, x: Array, centre: Array) -> Array:
@@ -93,7 +95,7 @@ def _arm_look() -> Look:
     free = np.where(arm, s.along - _ROOT, -1.0)
     held = np.where(arm, s.along - _HELD, -1.0)
     stripes = np.where(arm, np.minimum(free, 0.1 * np.cos(2.0 * s.around)), -1.0)
-    colors = (style.MARK, style.BETWEEN, style.AFTER, style.BEFORE)
+    colors = (style.ALGEBRA, style.BETWEEN, style.AFTER, style.BEFORE)
     made = patches(s.faces, [held, stripes, free])
     edges = (style.BEFORE_EDGE, style.BEFORE_EDGE)
     return Look((1.0, 0.35, 0.30), 0.40, colors, colors, made, edges, _eyes(s), s.eye)

@@ -9,6 +9,7 @@ from lietool.figure import Drawing, Param, Plate, Time, figure
 from . import _poisson_examples as examples
 from . import _poisson_own as own
 from . import _poisson_pages as pages
+from . import _poisson_table as tables
 
 _ARM = ("example", "octopus", "table")
 
@@ -21,17 +22,18 @@ _ARM = ("example", "octopus", "table")
             caption=(
                 "Seven arms of the octopus are pinned at their tips. The top of its head is a handle, drawn "
                 "with its axes: it is drawn up, stretched, and turned by 30 degrees. At the left the weight "
-                "of the handle, harmonic on the surface, from 0 at the pins to 1."
+                "of the handle, harmonic on the surface, from 0 at the pins to 1. Such weights have a crease "
+                "at the handle's border (black), and so has the edited head."
             ),
         ),
         "B7.8": Plate(
             title="An arm turned by 400 degrees",
             equations=("7.12", "7.14"),
             caption=(
-                "The body is pinned (grey), and the tip of an arm (red) is the handle: it is turned by 400 "
-                "degrees and led to where the arm comes when it is rolled up. By rotation vectors the arm is "
-                "rolled up. Unit quaternions turn it only by the remaining 40 degrees: it has to be pushed "
-                "into itself, and hundreds of its faces are turned over."
+                "The body is pinned (grey), and the tip of an arm (blue) is the handle: it is turned by 400 "
+                "degrees and led to where the arm comes when it is rolled up. Below, the arm from near by. "
+                "By rotation vectors it is rolled up. Unit quaternions turn it only by the remaining 40 "
+                "degrees: it has to be pushed into itself, and hundreds of its faces are turned over (red)."
             ),
             params={"example": "octopus"},
         ),
@@ -39,10 +41,11 @@ _ARM = ("example", "octopus", "table")
             title="Three methods on the same edits",
             equations=("7.12", "7.13", "7.14"),
             caption=(
-                "The arm rolled up by 170 and by 400 degrees; in a row the tip is at the same place. Up to "
-                "half a turn quaternions and the parametrisation do nearly the same, and the weights matter: "
-                "geodesic ones stretch more. Beyond, quaternions turn by the remainder only, whatever the "
-                "weights. Stretch is the larger of s_1 and 1 / s_2."
+                "The arm rolled up by 170 and by 400 degrees; in a row the tip (blue) is at the same place. "
+                "Up to half a turn quaternions and rotation vectors do nearly the same, and the weights "
+                "matter: geodesic ones stretch more. Beyond, quaternions turn by the remainder only, "
+                "whatever the weights; faces that are turned over are red. Stretch is the larger of s_1 and "
+                "1 / s_2."
             ),
             params={"example": "table"},
         ),
@@ -114,10 +117,10 @@ def poisson(
     if given is not None and example == "octopus":
         return pages.compare(looked(given), weights, (beside, way), t)
     if given is not None:
-        return pages.table([looked(given)], [None], t)
+        return tables.table([looked(given)], [None], t)
     # Rolled up less the tip is elsewhere, and not on a straight line to where it goes.
     asked = [t * turn] if example == "octopus" else [t * first, t * turn]
     arms = [looked(examples.by_arm(degrees, motion)) for degrees in asked]
     if example == "octopus":
         return pages.compare(arms[0], weights, (beside, way), 1.0)
-    return pages.table(arms, asked, 1.0)
+    return tables.table(arms, asked, 1.0)
