@@ -1,35 +1,42 @@
-"""The page of figure 4 of Kaji and Ochiai: three ways through the same keys, and det over time."""
+"""The page of figure 4 of Kaji and Ochiai: three ways through the same keys as strips, and det below."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from lietool.deform import pose
 from lietool.render import mesh_look, mesh_page, scene, style
-from lietool.render.camera import Box, Camera
+from lietool.render.camera import Camera, around
 from lietool.render.plot import Axes
 
 from ._pose_keys import Given
 
 _DIRECTION = (0.3, -1.0, 0.3)
-_AREA = (30.0, 292.0, 1140.0, 532.0)
-_PLOT = (150.0, 88.0, 930.0, 124.0)
-# A column is wider than what is seen in it by this, and at least as wide as its texts.
-_WIDER, _LEAST = 1.08, 326.0
+# Nearly without perspective: a pose looks the same wherever it stands in its strip.
+_FOV = np.radians(1.0)
+# The strips, from their lower edge to their upper; the plot, whose times are those of the strips; the ways.
+_STRIPS, _GAP, _LEAST = (288.0, 866.0), 8.0, 150.0
+_PLOT, _WAYS, _NAMES = (276.0, 122.0, 832.0, 122.0), (34.0, 104.0, 160.0, 150.0), 36.0
+# A key is at most so high, and over the distance between two poses so wide.
+_HIGH, _WIDE, _RIM = 150.0, 1.06, 5.0
 _TITLES = {
-    "phi_so": r"$\varphi\ (\mathbf{x}, \mathbf{l}, Y)$",
-    "phi_se": r"$\varphi\ (\hat{X}, Y)$",
-    "alexa": r"$\mathrm{matrix\ logarithm}$",
-    "linear": r"$\mathrm{matrices}$",
+    "phi_so": (r"$\varphi_{so}$",),
+    "phi_se": (r"$\varphi_{se}$",),
+    "alexa": (r"$\mathrm{matrix}$", r"$\mathrm{logarithm}$"),
+    "linear": (r"$\mathrm{matrices}$",),
 }
-# Colours of the curves, and dashes that tell them apart without colour.
+# Colours of the curves, and widths and dashes that tell them apart without colour where they coincide.
 _CURVES = (
-    (style.ROUTE_1, style.ROUTE_1_TEXT, None),
-    (style.ROUTE_2, style.ROUTE_2_TEXT, (13.0, 7.0)),
-    (style.MARK, style.MARK, (4.0, 4.0)),
+    (style.ROUTE_1, style.ROUTE_1_TEXT, 5.5, None),
+    (style.ROUTE_2_TEXT, style.ROUTE_2_TEXT, 2.2, (13.0, 9.0)),
+    (style.MARK, style.MARK, style.CURVE, (5.0, 4.0)),
 )
 # Points of the way of the centre, and directions in which a shape is measured.
 _BETWEEN, _OUTER = 121, 200
+# Curves of determinants that differ by less, over the height of the plot, are one to the eye.
+_ALIKE = 0.02
+# A name stands below a curve that is as far above 0, page units, or above it.
+_CLEAR = 45.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +48,7 @@ class Row:
     measure: pose.Measure | None
     t: np.ndarray
     det: np.ndarray
+    ratio: float
     why: str
 
     @property
@@ -48,10 +56,20 @@ class Row:
         """The part of the time during which det <= 0, to a hundredth."""
         return round(float(np.mean(self.det <= 0.0)), 2) if len(self.det) else 0.0
 
+    @property
+    def flat(self) -> np.ndarray:
+        """The times at which det changes its sign."""
+        k = np.flatnonzero((self.det[:-1] > 0.0) != (self.det[1:] > 0.0))
+        part = self.det[k] / (self.det[k] - self.det[k + 1])
+        return self.t[k] + part * (self.t[k + 1] - self.t[k])
+
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """A shape, its keys, the ways through them, how many poses between them, and a moment."""
+    """A shape, its keys, the ways through them, how many poses between them, and a moment.
+
+    `asked` is the largest ratio of stretches of a key, `meets` whether the ways pass through all of them.
+    """
 
     V: np.ndarray
     F: np.ndarray
@@ -60,43 +78,176 @@ class Shown:
     rows: tuple[Row, ...]
     frames: int
     now: float
+    asked: float
+    meets: bool
+
+    @property
+    def step(self) -> float:
+        """The least time between two poses that are shown."""
+        return float(np.diff(self.given.times).min()) / (self.frames + 1.0)
 
     @property
     def moments(self) -> np.ndarray:
-        """The times of the poses between the keys."""
+        """The times of the poses between the keys; one that the moment would cover is left out."""
         t = self.given.times
         part = np.arange(1, self.frames + 1) / (self.frames + 1.0)
-        return (t[:-1, None] + np.diff(t)[:, None] * part).ravel()
+        between = (t[:-1, None] + np.diff(t)[:, None] * part).ravel()
+        return between[np.abs(between - self.now) > 0.6 * self.step]
+
+
+@dataclass(frozen=True, eq=False)
+class _Pose:
+    """A pose (3, 3) at a time, its kind (0 a key, 1 between, 2 at the moment), and how far it reaches."""
+
+    L: np.ndarray
+    t: float
+    kind: int
+    low: np.ndarray
+    high: np.ndarray
 
 
 def picture(s: Shown) -> scene.Picture:
     """Return the page."""
-    few = _outer(s.V)
-    seen = [np.concatenate([_moved(A, few) for A in _poses(s, row)[0]]) for row in s.rows]
-    boxes = _columns(seen)
-    cameras = mesh_page.each(seen, _DIRECTION, boxes, 1.04)
-    views = []
-    for row, camera, box in zip(s.rows, cameras, boxes, strict=True):
-        views += [scene.View(tuple(rs), camera, box) for rs in (_shapes(s, row, camera), _way(s, row)) if rs]
-    names = zip(mesh_page.titles(boxes, [_TITLES[row.name] for row in s.rows]), _CURVES, strict=True)
-    texts = [
-        *(replace(label, color=text) for label, (_, text, _) in names),
-        *mesh_page.captions(boxes, [_caption(row) for row in s.rows]),
+    axes = _axes(s)
+    strips = [_poses(s, row) for row in s.rows]
+    scale, middles = _layout(s, strips)
+    rules = [
+        scene.Lines([axes.at(t, axes.ylim[0]), (axes.at(t, 0.0)[0], _STRIPS[1], 0.0)], style.RULE, style.HAIR)
+        for t in s.given.times
     ]
-    return scene.Picture((*views, scene.View((*texts, *_plot(s)))))
+    now = [axes.at(s.now, axes.ylim[0]), (axes.at(s.now, 0.0)[0], _STRIPS[1], 0.0)]
+    views = [scene.View((*rules, scene.Lines(now, style.ALGEBRA, style.THIN, dash=(7.0, 6.0))))]
+    for poses, middle in zip(strips, middles, strict=True):
+        views += [_view(s, p, scale, (float(axes.at(p.t, 0.0)[0]), middle)) for p in poses]
+    names = [r for k, row in enumerate(s.rows) for r in _name(s, row, middles[k], _CURVES[k][1])]
+    return scene.Picture((*views, *_ways(s), scene.View((*names, *_plot(s, axes), _legend(s)))))
 
 
-def _columns(seen: list[np.ndarray]) -> list[Box]:
-    """Boxes side by side, as wide as what is seen in them in one scale, and as texts need."""
-    sides = np.array([np.ptp(points @ Camera(_DIRECTION).axes[:2].T, axis=0) for points in seen])
-    left, low, width, height = _AREA
-    scale = height / max(float(sides[:, 1].max()), 1e-9)
-    while np.maximum(wide := _WIDER * scale * sides[:, 0], _LEAST).sum() > width:
-        scale *= 0.98
-    wide = np.maximum(wide, _LEAST)
-    wide += (width - wide.sum()) / len(wide)
-    starts = left + np.cumsum(wide) - wide
-    return [(float(x), low, float(w), height) for x, w in zip(starts, wide, strict=True)]
+def _layout(s: Shown, strips: list[list[_Pose]]) -> tuple[float, list[float]]:
+    """The scale, page units, in which all strips are as high as there is room, and their middles."""
+    room = _STRIPS[1] - _STRIPS[0] - _GAP * (len(strips) - 1)
+    keys = [p for p in strips[0] if p.kind == 0]
+    wide = _WIDE * _PLOT[2] * s.step / float(np.ptp(s.given.times))
+    scale = min(
+        wide / max(float((p.high - p.low)[0]) for p in keys),
+        _HIGH / max(float((p.high - p.low)[1]) for p in keys),
+    )
+    tall = np.array(
+        [2.0 * max(float(np.abs([p.low[1], p.high[1]]).max()) for p in poses) for poses in strips]
+    )
+    while np.maximum(tall * scale, _LEAST).sum() > room:
+        scale *= 0.97
+    heights = np.maximum(tall * scale, _LEAST)
+    heights += (room - heights.sum()) / len(heights)
+    tops = _STRIPS[1] - np.cumsum(heights + _GAP) + heights + _GAP
+    return scale, list(tops - heights / 2.0)
+
+
+def _poses(s: Shown, row: Row) -> list[_Pose]:
+    """The poses of a strip, in the order in which they are drawn: the keys over those between them."""
+    few, axes = _outer(s.V) - s.given.centre, Camera(_DIRECTION).axes[:2]
+    times, kinds = s.given.times, np.zeros(len(s.given.times), int)
+    A = s.given.A
+    if row.path is not None:
+        # At a key the key itself is shown, unless the curve passes it by.
+        between = s.moments
+        kinds = np.repeat([1, 0, 2], [len(between), len(times), 1])
+        times = np.concatenate([between, times, [s.now]])
+        A = np.concatenate([pose.evaluate(row.path, between), A, pose.evaluate(row.path, [s.now])])
+    poses = []
+    for L, t, kind in zip(A[:, :3, :3], times, kinds, strict=True):
+        seen = few @ L.T @ axes.T
+        poses.append(_Pose(L, float(t), int(kind), seen.min(axis=0), seen.max(axis=0)))
+    return poses
+
+
+_LOOKS = (
+    (style.AFTER, style.AFTER_EDGE, 1.6),
+    (style.BETWEEN, style.BETWEEN_EDGE, style.EDGE),
+    (style.SHELLS[0], style.ALGEBRA_TEXT, 1.6),
+)
+
+
+def _view(s: Shown, p: _Pose, scale: float, at: tuple[float, float]) -> scene.View:
+    """A pose about its place on the page."""
+    reach = scale * np.maximum(np.abs(p.low), np.abs(p.high)) + _RIM
+    box = (at[0] - float(reach[0]), at[1] - float(reach[1]), 2.0 * float(reach[0]), 2.0 * float(reach[1]))
+    camera = Camera(_DIRECTION, (0.0, 0.0, 0.0), box[3] / scale, _FOV)
+    L = p.L
+    inverted = float(np.linalg.det(L)) <= 0.0
+    X, F = (s.V - s.given.centre) @ L.T, s.F[:, ::-1] if inverted else s.F
+    # By the cofactors, which exist where the inverse does not.
+    N = s.N @ np.stack([np.cross(L[1], L[2]), np.cross(L[2], L[0]), np.cross(L[0], L[1])]).T
+    length = np.linalg.norm(N, axis=1, keepdims=True)
+    N = N / np.where(length > 0.0, length, 1.0)
+    fill, edge, width = (style.WRONG, style.INK, 1.6) if inverted else _LOOKS[p.kind]
+    records = mesh_look.surface(X, F, fill, normals=N)
+    return scene.View((*records, *mesh_look.outline(X, F, camera, edge, width)), camera, box)
+
+
+def _name(s: Shown, row: Row, middle: float, color: str) -> list[scene.Record]:
+    """What stands at the left of a strip: its name and what was measured."""
+    lines = [(text, color, style.TITLE_TEXT) for text in _TITLES[row.name]]
+    lines += [(text, tone, style.SMALL_TEXT) for text, tone in _measured(s, row)]
+    top = middle + 38.0 * (len(lines) - 1) / 2.0
+    return [
+        scene.Label(text, (_NAMES, top - 38.0 * k, 0.0), tone, size, anchor="lc")
+        for k, (text, tone, size) in enumerate(lines)
+    ]
+
+
+def _measured(s: Shown, row: Row) -> list[tuple[str, str]]:
+    if row.measure is None:
+        return [(r"$\mathrm{no\ real}$", style.MARK), (r"$\mathrm{logarithm}$", style.MARK)]
+    lines = []
+    if s.meets and not row.measure.is_degenerate:
+        far = row.measure.turned > 1.5 * row.measure.geodesic + 1e-9
+        turned = rf"$\mathrm{{turn}}\ {np.degrees(row.measure.turned):.0f}^{{\circ}}$"
+        lines.append((turned, style.MARK if far else style.INK))
+    ratio = rf"{row.ratio:.1f}" if np.isfinite(row.ratio) else r"\infty"
+    lines.append((rf"$\mathrm{{ratio}}\ {ratio}$", style.MARK if row.ratio > 2.0 * s.asked else style.INK))
+    return lines
+
+
+def _legend(s: Shown) -> scene.Label:
+    asked = rf"\mathrm{{ratio}}\ {s.asked:.1f}"
+    if s.meets and s.rows[0].measure is not None:
+        asked += rf",\ \mathrm{{turn}}\ {np.degrees(s.rows[0].measure.geodesic):.0f}^{{\circ}}"
+    return mesh_page.legend(
+        r"$\mathrm{ratio{:}\ largest\ to\ smallest\ stretch}$"
+        + rf"$;\quad\mathrm{{of\ the\ keys{{:}}}}\ {asked}$"
+    )
+
+
+def _ways(s: Shown) -> list[scene.View]:
+    """Where the centre goes."""
+    keys = _centre(s, s.given.A)
+    ways = [
+        None
+        if row.path is None
+        else _centre(s, pose.evaluate(row.path, np.linspace(*row.path.ends, _BETWEEN)))
+        for row in s.rows
+    ]
+    camera = around(np.concatenate([keys, *(w for w in ways if w is not None)]), _DIRECTION, _WAYS, 1.15)
+    records: list[scene.Record] = [
+        scene.Lines(way, color, 0.7 * width, dash=dash)
+        for way, (color, _, width, dash) in zip(ways, _CURVES, strict=True)
+        if way is not None
+    ]
+    records.append(scene.Points(keys, style.ARC, 6.0, rim=style.ARC_TEXT, shaded=False))
+    first = s.rows[0].path
+    if first is not None:
+        records.append(
+            scene.Points(_centre(s, pose.evaluate(first, [s.now])), style.ALGEBRA, 5.0, shaded=False)
+        )
+    left, low, width, height = _WAYS
+    at = (left + width / 2.0, low + height, 0.0)
+    name = scene.Label(r"$\mathrm{centre}$", at, style.INK, style.SMALL_TEXT, (0.0, 20.0))
+    return [scene.View(tuple(records), camera, _WAYS), scene.View((name,))]
+
+
+def _centre(s: Shown, A: np.ndarray) -> np.ndarray:
+    return A[:, :3, :3] @ s.given.centre + A[:, :3, 3]
 
 
 def _outer(V: np.ndarray) -> np.ndarray:
@@ -108,80 +259,52 @@ def _outer(V: np.ndarray) -> np.ndarray:
     return V[np.unique(np.argmax(V @ ways.T, axis=0))]
 
 
-def _moved(A: np.ndarray, V: np.ndarray) -> np.ndarray:
-    return V @ A[:3, :3].T + A[:3, 3]
-
-
-def _poses(s: Shown, row: Row) -> tuple[np.ndarray, np.ndarray]:
-    """Poses (f, 4, 4) and what each is: 0 a key, 1 between, 2 at the moment."""
-    keys = s.given.A
-    if row.path is None:
-        return keys, np.zeros(len(keys), int)
-    apart = 0.4 * np.diff(s.given.times).min() / (s.frames + 1.0)
-    between = s.moments[np.abs(s.moments - s.now) > apart]
-    # At a key the key itself is shown, unless the curve passes it by.
-    A = [keys, pose.evaluate(row.path, between), pose.evaluate(row.path, [s.now])]
-    return np.concatenate(A), np.repeat([0, 1, 2], [len(part) for part in A])
-
-
-_LOOKS = (
-    (style.AFTER, style.AFTER_EDGE),
-    (style.BETWEEN, style.BETWEEN_EDGE),
-    (style.SHELLS[0], style.ALGEBRA_TEXT),
-)
-
-
-def _shapes(s: Shown, row: Row, camera: Camera) -> list[scene.Record]:
-    records: list[scene.Record] = []
-    for A, kind in zip(*_poses(s, row), strict=True):
-        det = float(np.linalg.det(A[:3, :3]))
-        X, F = _moved(A, s.V), s.F if det > 0.0 else s.F[:, ::-1]
-        # By the cofactors, which exist where the inverse does not.
-        L = A[:3, :3]
-        N = s.N @ np.stack([np.cross(L[1], L[2]), np.cross(L[2], L[0]), np.cross(L[0], L[1])]).T
-        length = np.linalg.norm(N, axis=1, keepdims=True)
-        N = N / np.where(length > 0.0, length, 1.0)
-        fill, edge = _LOOKS[kind] if det > 0.0 else (style.WRONG, style.INK)
-        records += mesh_look.surface(X, F, fill, normals=N)
-        records += mesh_look.outline(X, F, camera, edge, 1.6)
-    return records
-
-
-def _way(s: Shown, row: Row) -> list[scene.Record]:
-    """The way of the centre, over the shapes."""
-    if row.path is None:
-        return []
-    t = np.linspace(*row.path.ends, _BETWEEN)
-    way = np.array([_moved(A, s.given.centre) for A in pose.evaluate(row.path, t)])
-    keys = np.array([_moved(A, s.given.centre) for A in s.given.A])
-    return [scene.Lines(way, style.INK, style.THIN, 0.75), scene.Points(keys, style.INK, 4.5, shaded=False)]
-
-
-def _caption(row: Row) -> str:
-    if row.measure is None:
-        return r"$\mathrm{no\ real\ logarithm}$"
-    if row.measure.is_degenerate:
-        return rf"$\det A \leq 0\ \mathrm{{in}}\ {max(round(100.0 * row.inside_out), 1)}\%\ \mathrm{{of}}\ t$"
-    spin = f"{row.measure.spin:.2f}" if np.isfinite(row.measure.spin) else r"\infty"
-    return rf"$\mathrm{{spin}}\ {spin},\ \ \det A \geq {row.measure.least_det:.2f}$"
-
-
-def _plot(s: Shown) -> list[scene.Record]:
-    """det A over t."""
+def _axes(s: Shown) -> Axes:
     dets = np.concatenate([row.det for row in s.rows if row.path is not None])
-    top, low = max(1.1 * float(dets.max()), 1.2), min(1.1 * float(dets.min()), -0.15)
+    top = max(1.1 * float(dets.max()), 1.25)
     times = s.given.times
-    axes = Axes(_PLOT, (float(times[0]), float(times[-1])), (low, top))
+    return Axes(_PLOT, (float(times[0]), float(times[-1])), (min(1.1 * float(dets.min()), -0.2 * top), top))
+
+
+def _plot(s: Shown, axes: Axes) -> list[scene.Record]:
+    """det A over t, with what is inside out below 0."""
+    low, top = axes.ylim
+    times = s.given.times
     marks = [(0.0, "$0$"), (1.0, "$1$")] if top < 4.0 and low > -4.0 else [(0.0, "$0$")]
-    ticks = [(float(t), f"${t:g}$") for t in times]
-    records = axes.frame(ticks, marks, "$t$")
+    corners = axes.at([times[0], times[-1], times[-1], times[0]], [low, low, 0.0, 0.0])
+    records: list[scene.Record] = [
+        scene.Surface(corners, [[0, 1, 2], [0, 2, 3]], style.WRONG, material="flat", alpha=0.16)
+    ]
+    records += axes.frame([(float(t), f"${t:g}$") for t in times], marks, "$t$")
     records.append(
-        scene.Label(
-            r"$\det A$", axes.at(times[0], (low + top) / 2.0), style.INK, style.SMALL_TEXT, (-80.0, 0.0)
-        )
+        scene.Label(r"$\det A$", axes.at(times[0], top), style.INK, style.SMALL_TEXT, (-14.0, 10.0), "rc")
     )
-    for row, (color, _, dash) in zip(s.rows, _CURVES, strict=True):
+    for row, (color, _, width, dash) in zip(s.rows, _CURVES, strict=True):
         if row.path is not None:
-            records.append(axes.curve(row.t, row.det, color, style.CURVE, dash))
-    records.append(axes.vertical(s.now, style.ALGEBRA))
-    return records
+            records.append(axes.curve(row.t, row.det, color, width, dash))
+            if len(row.flat):
+                records.append(axes.dots(row.flat, np.zeros(len(row.flat)), color, 6.0))
+    return [*records, *_curve_names(s, axes)]
+
+
+def _curve_names(s: Shown, axes: Axes) -> list[scene.Record]:
+    """Names at the curves; one for those that cannot be told apart."""
+    found = [(row, _CURVES[k][1]) for k, row in enumerate(s.rows) if row.path is not None]
+    height = axes.ylim[1] - axes.ylim[0]
+    groups: list[list[tuple[Row, str]]] = []
+    for row, color in found:
+        for group in groups:
+            if np.abs(group[0][0].det - row.det).max() < _ALIKE * height:
+                group.append((row, color))
+                break
+        else:
+            groups.append([(row, color)])
+    names = []
+    for k, group in enumerate(groups):
+        text = r"\ \mathrm{and}\ ".join(r"\ ".join(_TITLES[row.name]).replace("$", "") for row, _ in group)
+        at = len(group[0][0].t) // 2
+        place = axes.at(group[0][0].t[at], group[0][0].det[at])
+        below = k > 0 and place[1] > axes.at(0.0, 0.0)[1] + _CLEAR
+        up = (0.0, -24.0 if below else 24.0)
+        names.append(scene.Label(f"${text}$", place, group[0][1], style.SMALL_TEXT, up, room=120.0))
+    return names

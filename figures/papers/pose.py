@@ -16,6 +16,8 @@ from . import _pose_page as page
 _SOLIDS = {"duck": solids.duck, "animal": solids.animals, "cactus": solids.cactus, "octopus": solids.octopus}
 # Moments at which determinants are measured, and to how many digits what splines make of rounding is kept.
 _MOMENTS, _DIGITS = 601, 10
+# Curves that pass keys by: they need not turn as far.
+_NEAR = ("b_spline_near", "bezier")
 
 
 @figure(
@@ -25,10 +27,12 @@ _MOMENTS, _DIGITS = 601, 10
             equations=("K 1", "K 9"),
             caption=(
                 "Four key poses (orange), turned far and sheared, joined by the B-spline through their "
-                "parameters. By phi the duck turns about as far as it must and stays a duck. The principal "
-                "matrix logarithm takes a long way round, with shears that no key has. The spline through "
-                "the matrices flattens the duck, and has it inside out (red) where det A falls below 0. "
-                "Blue, or red: the moment of the dashed line."
+                "parameters; each pose stands at its time, and where the centre goes is drawn below at the "
+                "left. By phi_so the duck turns about as far as it must and stays a duck. The principal "
+                "matrix logarithm takes a long way round, drawn out as no key is; its determinants are "
+                "those of phi_so, and say nothing of that. The spline through the matrices flattens the "
+                "duck and has it inside out (red) where det A falls below 0. Blue, or red: the moment of "
+                "the dashed line."
             ),
         ),
         "K4b": Plate(
@@ -36,11 +40,11 @@ _MOMENTS, _DIGITS = 601, 10
             equations=("K 1", "K 9"),
             caption=(
                 "The same four keys as control points of a B-spline: it meets the first and the last, and "
-                "passes near the others. The parameters make up a linear space, so that any curve in them "
-                "will do; among the matrices the duck is thin most of the way, and twice inside out (red). "
-                "Where a curve does not meet its keys, it may turn less than they do: the spin is below 1."
+                "passes near the others, shown all the same (orange). The parameters make up a linear "
+                "space, so that any curve in them will do; the matrix logarithm draws the duck out, and "
+                "among the matrices it is thin most of the way, and twice inside out (red)."
             ),
-            params={"curve": "b_spline_near"},
+            params={"curve": "b_spline_near", "t": 0.78},
         ),
     },
     time=Time("t", 0.0, 1.0, frames=72, seconds=6.0),
@@ -57,22 +61,23 @@ def pose(
         Literal["b_spline", "b_spline_near", "bezier", "catmull_rom", "straight"],
         Param("through the keys, or near them"),
     ] = "b_spline",
-    parametrisation: Annotated[Literal["phi_so", "phi_se"], Param("ours, the one on the left")] = "phi_so",
+    parametrisation: Annotated[Literal["phi_so", "phi_se"], Param("of the upper row")] = "phi_so",
     frames: Annotated[int, Param("poses shown between two keys", low=0, high=8)] = 2,
     t: Annotated[float, Param("a moment, 0 the first key and 1 the last", low=0.0, high=1.0)] = 0.9,
 ) -> Drawing:
     """Pose: key transformations joined by a spline in a space of parameters.
 
-    What to look for: the same keys (orange) three times. On the left the pale
-    poses between them are as large as they should be. In the middle the matrix
-    logarithm, each key's principal one, turns the long way round. On the right
-    matrices are added up: the shape is flattened, and red where it is inside
-    out. The plot says so in numbers: det A is the volume, in that at rest.
+    What to look for: the same keys (orange) three times, each pose at its time.
+    In the upper row the pale poses between them are as large as they should be.
+    In the middle the matrix logarithm, each key's principal one, turns the long
+    way round and draws the shape out. Below, matrices are added up: the shape is
+    flattened, and red where it is inside out. The plot says so in numbers: det A
+    is the volume, in that at rest.
 
     A file of keys has, as many times as there are keys, [[key]] and below it any
     of: time, translation, axis, degrees, turns, scale, stretch or matrix, as in a
     file of probes; and centre once, the point that is turned about. The mesh
-    that is written is the one on the left at the moment t.
+    that is written is that of the upper row at the moment t.
     """
     body, normals = _body(mesh, shape)
     V = body.vertices
@@ -88,7 +93,8 @@ def pose(
         raise ValueError(rows[0].why)
     span = given.times[[0, -1]]
     now = float(span[0] + t * (span[1] - span[0]))
-    shown = page.Shown(V, body.faces, normals, given, tuple(rows), frames, now)
+    asked, meets = _ratio(given.A[:, :3, :3]), curve not in _NEAR
+    shown = page.Shown(V, body.faces, normals, given, tuple(rows), frames, now, asked, meets)
     A = deform_pose.evaluate(rows[0].path, min(max(now, span[0]), span[1]))
     moved = body.moved(V @ A[:3, :3].T + A[:3, 3])
     return Drawing(page.picture(shown), _numbers(given, rows, A), moved)
@@ -110,14 +116,24 @@ def _row(given: keys_of.Given, name: str, curve: str) -> page.Row:
     try:
         path = given.path(name, curve)
         t = np.linspace(*path.ends, _MOMENTS)
-        det = np.linalg.det(deform_pose.evaluate(path, t)[:, :3, :3])
-        return page.Row(name, path, deform_pose.measure(path), t, det, "")
+        L = deform_pose.evaluate(path, t)[:, :3, :3]
+        det = np.linalg.det(L)
+        return page.Row(name, path, deform_pose.measure(path), t, det, _ratio(L), "")
     except ValueError as error:
-        return page.Row(name, None, None, np.zeros(0), np.zeros(0), str(error))
+        return page.Row(name, None, None, np.zeros(0), np.zeros(0), np.nan, str(error))
+
+
+def _ratio(L: np.ndarray) -> float:
+    """The largest ratio of stretches of matrices (n, 3, 3) on a path; infinite where it flattens."""
+    if not (np.linalg.det(L) > 0.0).all():
+        return float("inf")
+    stretches = np.linalg.svd(L, compute_uv=False)
+    return float((stretches[:, 0] / stretches[:, 2]).max())
 
 
 def _numbers(given: keys_of.Given, rows: list[page.Row], A: np.ndarray) -> dict[str, object]:
     numbers: dict[str, object] = {"keys": given.A, "times": given.times, "A": np.round(A, _DIGITS)}
+    numbers["keys ratio"] = round(_ratio(given.A[:, :3, :3]), 4)
     for row in rows:
         numbers[f"{row.name} found"] = row.path is not None
         if row.measure is not None:
@@ -125,4 +141,6 @@ def _numbers(given: keys_of.Given, rows: list[page.Row], A: np.ndarray) -> dict[
             numbers[f"{row.name} needed"] = round(float(np.degrees(row.measure.geodesic)), 6)
             numbers[f"{row.name} least det"] = round(row.measure.least_det, 6)
             numbers[f"{row.name} inside out"] = row.inside_out
+            if np.isfinite(row.ratio):
+                numbers[f"{row.name} ratio"] = round(row.ratio, 4)
     return numbers

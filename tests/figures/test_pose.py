@@ -63,6 +63,16 @@ class TestNumbers:
         assert shown["alexa turned"] > 1.7 * needed
         assert needed <= shown["phi_so turned"] < 1.2 * needed
 
+    def test_by_the_logarithm_it_is_drawn_out_as_no_key_is(self, plate):
+        shown = plate("K4").numbers
+        logs = np.array([np.real(logm(A[:3, :3])) for A in shown["keys"]])
+        s = np.array([np.linalg.svd(expm(x))[1] for x in natural(logs)(np.linspace(0.0, 3.0, 601))])
+        assert shown["alexa ratio"] == pytest.approx((s[:, 0] / s[:, 2]).max(), rel=1e-3)
+        assert shown["alexa ratio"] > 5.0 * shown["keys ratio"]
+        assert shown["phi_so ratio"] < 1.2 * shown["keys ratio"]
+        near = plate("K4b").numbers
+        assert near["phi_so ratio"] < near["keys ratio"] < 0.4 * near["alexa ratio"]
+
     def test_the_turns_needed_are_the_angles_between_the_keys(self, plate):
         shown = plate("K4").numbers
         u, _, v = np.linalg.svd(shown["keys"][:, :3, :3])
@@ -109,11 +119,11 @@ class TestFiles:
         assert found.numbers["times"] == pytest.approx([2.0, 6.0])
         assert found.numbers["A"][:3, 3] == pytest.approx([2.0, 0.0, 0.0])
 
-    def test_a_key_without_a_logarithm_leaves_a_column_to_the_keys_alone(self, mesh, keys):
+    def test_a_key_without_a_logarithm_leaves_a_row_to_the_keys_alone(self, mesh, keys):
         half = {"axis": [0, 0, 1], "degrees": 180, "scale": [1, 2, 1]}
         found = drawn(mesh=mesh, keys=keys({"key": [{}, half]}))
         assert not found.numbers["alexa found"] and found.numbers["phi_so found"]
-        assert any("no" in text and "logarithm" in text for text in texts(found))
+        assert r"$\mathrm{no\ real}$" in texts(found)
 
     @pytest.mark.parametrize(
         ("data", "message"),
