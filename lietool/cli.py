@@ -142,7 +142,8 @@ class _Lietool(click.Group):
             return _say(f"{path}: {_one_line(error)}", 2)
         except MemoryError as error:
             why = f" ({_one_line(error)})" if str(error) else ""
-            return _say(f"{path}: not enough memory{why}. Make a smaller picture with --size, or give a smaller file", 2)
+            remedy = "Make a smaller picture with --size, or give a smaller file"
+            return _say(f"{path}: not enough memory{why}. {remedy}", 2)
         except RuntimeError as error:
             # Only what has been imported can have been raised.
             context = sys.modules.get("lietool.render.context")
