@@ -291,7 +291,10 @@ def test_values_that_begin_with_a_minus(folder: Path) -> None:
         ("ball --q0 0,0,0,0", " ball: quaternion.normalize: q must be different from zero; got 0."),
         ("ball --mesh x.obj", " ball: --mesh must be a file that exists; got 'x.obj'."),
         ("ball --dent 3", " ball: No such file: x.obj"),
-        ("ball --dent 5", " ball: not enough memory. Make a smaller picture with --size, or give a smaller file"),
+        (
+            "ball --dent 5",
+            " ball: not enough memory. Make a smaller picture with --size, or give a smaller file",
+        ),
         ("ball 3", " ball: Got unexpected extra argument (3). See lietool ball --help"),
         ("ball --turn", " ball: Option '--turn' requires an argument."),
         (
