@@ -1,78 +1,35 @@
 """The page of figure 7.1: the three steps of phi above, the three parameters below."""
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
-from lietool.lie import se3, so3
 from lietool.render import letter as shape
 from lietool.render import marks, mesh_look, scene, solids, style
 from lietool.render.camera import Camera, around
 from lietool.render.globe import globe, joined
 from lietool.render.mesh_page import each, legend, titles
+from lietool.render.plot import number
+
+from ._parametrise_shown import NOTHING, Shown
 
 _DIRECTION = (1.0, 0.5, 0.34)
-_COLUMNS = ((190.0, 276.0), (476.0, 312.0), (798.0, 366.0))
-_UPPER = tuple((x, 466.0, w, 350.0) for x, w in _COLUMNS)
-_LOWER = tuple((x, 146.0, w, 262.0) for x, w in _COLUMNS)
-_SIDE, _ROWS = 98.0, (640.0, 268.0)
+_COLUMNS = ((202.0, 246.0), (440.0, 340.0), (776.0, 400.0))
+_UPPER = tuple((x, 478.0, w, 346.0) for x, w in _COLUMNS)
+_LOWER = tuple((x, 164.0, w, 290.0) for x, w in _COLUMNS)
+# The lines of titles, and of the numbers under the columns.
+_TITLES, _NUMBERS = 836.0, (134.0, 98.0)
+_SIDE, _ROWS = 104.0, (640.0, 290.0)
 _BALL, _SMALL = np.pi, style.SMALL_TEXT
 # Half of the axis of rotation, in heights of the letter; the axes of space beside l; where its ball has pi.
-_AXIS, _SPACE, _RIM = 0.95, 0.9, 200
-# Shorter vectors are none.
-_NOTHING = 1e-9
+_AXIS, _SPACE, _RIM = 0.95, 0.9, 0
+# Where the turn is drawn on the axis, beyond the letter, and its radius.
+_OUT, _RADIUS = 1.12, 0.3
 _LETTERS = {
     "rest": (style.BEFORE_EDGE, style.GREYS[1], style.BEFORE),
     "between": (style.BETWEEN_EDGE, style.GREYS[1], style.BETWEEN),
     "after": (style.ARC, style.GREYS[1], style.AFTER),
 }
-
-
-@dataclass(frozen=True, eq=False)
-class Shown:
-    """The parameters x, l = shift, Y = Q diag(logs) Q^T, their image A, and what psi says of it."""
-
-    map: str
-    x: np.ndarray
-    shift: np.ndarray
-    Q: np.ndarray
-    logs: np.ndarray
-    A: np.ndarray
-    back_x: np.ndarray
-    back_shift: np.ndarray
-    same: bool
-
-    @property
-    def S(self) -> np.ndarray:
-        """exp(Y)"""
-        return (self.Q * np.exp(self.logs)) @ self.Q.T
-
-    @property
-    def R(self) -> np.ndarray:
-        """The rotation of A."""
-        return so3.exp(self.x)
-
-    @property
-    def d(self) -> np.ndarray:
-        """The translation of A."""
-        return self.A[:3, 3]
-
-    def way(self, n: int = 121) -> np.ndarray:
-        """The way (n, 3) of the origin to d: of the screw motion, or straight."""
-        t = np.linspace(0.0, 1.0, n)[:, None]
-        if self.map == "phi_so":
-            return t * self.shift
-        return se3.exp(t * np.concatenate([self.x, self.shift]))[:, :3, 3]
-
-
-def unit(name: str, v: tuple[float, float, float]) -> np.ndarray:
-    """Return a vector brought to length 1; ValueError if it has none."""
-    w = np.asarray(v, float)
-    size = float(np.abs(w).max())
-    if not size > 1e-150:
-        raise ValueError(f"parametrise: {name} must be different from 0; got {v}. Give a direction")
-    w = w / size
-    return w / np.linalg.norm(w)
 
 
 def picture(s: Shown) -> scene.Picture:
@@ -86,7 +43,7 @@ def _steps(s: Shown) -> list[scene.View]:
     corners = shape.solid()[0]
     seen = [
         [corners, corners @ s.S.T],
-        [corners @ s.S.T, corners @ (s.R @ s.S).T, _AXIS * _axis(s), -_AXIS * _axis(s)],
+        [corners @ s.S.T, corners @ (s.R @ s.S).T, *_ends(s)],
         [corners @ (s.R @ s.S).T, corners @ s.A[:3, :3].T + s.d, s.way(), s.shift[None]],
     ]
     cameras = each([np.concatenate(points) for points in seen], _DIRECTION, _UPPER, 1.1)
@@ -107,7 +64,14 @@ def _steps(s: Shown) -> list[scene.View]:
 def _axis(s: Shown) -> np.ndarray:
     """The unit vector along x as a row (1, 3); z where there is no rotation."""
     theta = float(np.linalg.norm(s.x))
-    return (s.x / theta if theta > _NOTHING else np.array([0.0, 0.0, 1.0]))[None]
+    return (s.x / theta if theta > NOTHING else np.array([0.0, 0.0, 1.0]))[None]
+
+
+def _ends(s: Shown) -> tuple[np.ndarray, np.ndarray]:
+    """The ends of what is drawn of the axis, each (1, 3): first the nearer, where the turn is."""
+    u = _axis(s)
+    near = u if u[0] @ np.array(_DIRECTION) >= 0.0 else -u
+    return (_OUT + 0.16) * near, -_AXIS * near
 
 
 def _letter(M: np.ndarray, at: np.ndarray, look: str) -> list[scene.Record]:
@@ -126,29 +90,53 @@ def _ghost(M: np.ndarray, at: np.ndarray) -> list[scene.Record]:
 
 def _turn(s: Shown, camera: Camera) -> list[scene.Record]:
     """The axis, and the turn about it where it leaves the letter towards the viewer."""
-    if np.linalg.norm(s.x) <= _NOTHING:
+    if np.linalg.norm(s.x) <= NOTHING:
         return []
-    u = _axis(s)[0]
-    near = u if u @ camera.axes[2] >= 0.0 else -u
-    line = scene.Lines([-_AXIS * u, _AXIS * u], style.ALGEBRA, style.THIN, dash=(9.0, 6.0))
-    return [line, *mesh_look.turn(0.78 * near, s.x, 0.3, camera, color=style.ALGEBRA_TEXT, room=90.0)]
+    near, far = (end[0] for end in _ends(s))
+    center = _OUT / (_OUT + 0.16) * near
+    arc = mesh_look.turn(center, s.x, _RADIUS, camera, color=style.ALGEBRA_TEXT, text="")
+    records: list[scene.Record] = [scene.Lines([far, near], style.ALGEBRA, style.THIN, dash=(9.0, 6.0)), *arc]
+    angle, turned = float(np.linalg.norm(s.x)), arc[0]
+    if not isinstance(turned, scene.Tube):
+        return records
+    start = np.asarray(turned.points)[0]
+    if angle <= 2.0 * np.pi:
+        stop = center + s.R @ (start - center)
+        records.append(scene.Lines([start, center, stop], style.ALGEBRA_TEXT, style.HAIR))
+    # Its name is at its middle, or below its beginning, where a long one has its free end.
+    at = np.asarray(turned.points)[len(turned.points) // 2] if angle < np.pi else start
+    name = rf"${number(np.degrees(angle), 1)}^{{\circ}}$"
+    color = style.ALGEBRA_TEXT
+    records.append(marks.beyond(name, at, at - center, camera, color=color, gap=26.0, room=50.0))
+    return records
 
 
 def _moved(s: Shown, camera: Camera) -> list[scene.Record]:
     """The way of the origin to d, and l, along which it sets out."""
     way = s.way()
     records: list[scene.Record] = [scene.Points([np.zeros(3)], style.INK, 6.0)]
-    if s.map == "phi_se" and np.linalg.norm(s.shift) > _NOTHING:
+    if s.map == "phi_se" and np.linalg.norm(s.shift) > NOTHING:
         records.append(scene.Arrow(np.zeros(3), s.shift, style.ALGEBRA, 0.016))
         records.append(
             marks.beyond(
                 r"$\mathbf{l}$", s.shift, s.shift, camera, color=style.ALGEBRA_TEXT, gap=24.0, room=60.0
             )
         )
-    if np.linalg.norm(s.d) > _NOTHING:
-        records += marks.curved_arrow(way, style.AFTER_EDGE, 0.02)
-        name = r"$\mathbf{d}$" if s.map == "phi_se" else r"$\mathbf{l}$"
-        records.append(marks.beyond(name, way[-1], s.d, camera, color=style.ARC_TEXT, gap=30.0, room=70.0))
+    if np.linalg.norm(s.d) > NOTHING:
+        if s.map == "phi_so":
+            records.append(scene.Arrow(np.zeros(3), s.d, style.ALGEBRA, 0.016))
+            name = r"$\mathbf{l}$"
+            records.append(
+                marks.beyond(name, s.d, s.d, camera, color=style.ALGEBRA_TEXT, gap=24.0, room=60.0)
+            )
+        else:
+            records += marks.curved_arrow(way, style.AFTER_EDGE, 0.02)
+            middle = way[len(way) // 2]
+            away = middle - (s.shift * (middle @ s.shift) / max(float(s.shift @ s.shift), 1e-12))
+            name = r"$\mathbf{d}$"
+            records.append(
+                marks.beyond(name, middle, away, camera, color=style.ARC_TEXT, gap=24.0, room=60.0)
+            )
     return records
 
 
@@ -180,14 +168,16 @@ def _stretch(s: Shown, camera: Camera) -> list[list[scene.Record]]:
     over: list[scene.Record] = [ball]
     for q, log in zip(s.Q.T, s.logs, strict=True):
         over.append(scene.Lines([-q, q], style.ALGEBRA, style.HAIR))
-        for side in (q, -q) if abs(log) > _NOTHING else ():
+        if abs(log) <= NOTHING:
+            over.append(scene.Points([-q, q], style.ALGEBRA, 5.0, shaded=False))
+        for side in (q, -q) if abs(log) > NOTHING else ():
             over.append(scene.Arrow(side, np.exp(log) * side, style.ALGEBRA, 0.011 * camera.height, 2.2))
         # A name stands at the nearer end of its axis.
         near = q if q @ camera.axes[2] >= 0.0 else -q
         end = max(float(np.exp(log)), 1.0) * near
         text = f"${_signed(float(log))}$"
         over.append(
-            marks.beyond(text, end, near, camera, color=style.ALGEBRA_TEXT, size=_SMALL, gap=36.0, room=80.0)
+            marks.beyond(text, end, near, camera, color=style.ALGEBRA_TEXT, size=_SMALL, gap=34.0, room=60.0)
         )
     return [[scene.Surface(egg, F, style.BETWEEN, normals, "soft")], over]
 
@@ -198,19 +188,20 @@ def _vector(s: Shown, camera: Camera) -> list[list[scene.Record]]:
     over += _given(s.x, r"$\mathbf{x}$", camera)
     if not s.same:
         over += _answered(s.back_x, s.x, r"$\mathbf{x}'$", camera)
-    left = camera.sphere_outline(np.zeros(3), _BALL)[_RIM]
-    over.append(marks.beyond(r"$\pi$", left, left, camera, color=style.GLASS_EDGE, size=_SMALL, gap=22.0))
+    rim = camera.sphere_outline(np.zeros(3), _BALL)[_RIM]
+    over.append(scene.Lines([np.zeros(3), rim], style.GLASS_EDGE, style.THIN))
+    over.append(scene.Label(r"$\pi$", 0.62 * rim, style.GLASS_EDGE, _SMALL, (0.0, 20.0), room=40.0))
     return [globe(camera, _BALL, alpha=0.6), over]
 
 
 def _translation(s: Shown, camera: Camera) -> list[list[scene.Record]]:
     """The translation part, beside the axes of space."""
     records: list[scene.Record] = []
-    for axis, name, color, text in zip(np.eye(3), "xyz", style.AXES, style.AXES_TEXT, strict=True):
-        records.append(scene.Lines([np.zeros(3), _SPACE * axis], color, style.EDGE))
+    for axis, name in zip(np.eye(3), "xyz", strict=True):
+        records.append(scene.Lines([np.zeros(3), _SPACE * axis], style.MUTED, style.THIN))
         records.append(
             marks.beyond(
-                f"${name}$", _SPACE * axis, axis, camera, color=text, size=_SMALL, gap=20.0, room=50.0
+                f"${name}$", _SPACE * axis, axis, camera, color=style.MUTED, size=_SMALL, gap=20.0, room=50.0
             )
         )
     records += [scene.Points([np.zeros(3)], style.INK, 5.0), *_given(s.shift, r"$\mathbf{l}$", camera)]
@@ -221,7 +212,7 @@ def _translation(s: Shown, camera: Camera) -> list[list[scene.Record]]:
 
 def _given(v: np.ndarray, name: str, camera: Camera) -> list[scene.Record]:
     """A vector of the parameters."""
-    if np.linalg.norm(v) <= _NOTHING:
+    if np.linalg.norm(v) <= NOTHING:
         return []
     label = marks.beyond(name, v, v, camera, color=style.ALGEBRA_TEXT, gap=26.0, room=60.0)
     return [scene.Arrow(np.zeros(3), v, style.ALGEBRA, 0.011 * camera.height), label]
@@ -229,12 +220,12 @@ def _given(v: np.ndarray, name: str, camera: Camera) -> list[scene.Record]:
 
 def _answered(v: np.ndarray, given: np.ndarray, name: str, camera: Camera) -> list[scene.Record]:
     """The one that psi gives instead."""
-    if np.linalg.norm(v - given) <= _NOTHING:
+    if np.linalg.norm(v - given) <= NOTHING:
         return []
     return [
         scene.Lines([np.zeros(3), v], style.MARK, style.CURVE, dash=(9.0, 6.0)),
         scene.Points([v], style.MARK, 8.0),
-        marks.beyond(name, v, v, camera, color=style.MARK, gap=26.0, room=60.0),
+        scene.Label(name, v, style.MARK, style.TEXT, (32.0, 6.0), room=40.0),
     ]
 
 
@@ -242,13 +233,11 @@ def _maps(s: Shown) -> list[scene.Record]:
     """Between both rows, phi upwards and psi downwards."""
     low, high = _ROWS[1] + 74.0, _ROWS[0] - 60.0
     records: list[scene.Record] = []
-    for x, start, stop, name, side in ((-26.0, low, high, r"\varphi", -1), (26.0, high, low, r"\psi", 1)):
+    for x, start, stop, name, side in ((-12.0, low, high, s.symbol, -40.0), (16.0, high, low, r"\psi", 28.0)):
         at = _SIDE + x
         records.append(scene.Arrow((at, start, 0), (at, stop, 0), style.INK, 2.2, 3.4))
         records.append(
-            scene.Label(
-                f"${name}$", (at, (low + high) / 2.0, 0), style.INK, style.TITLE_TEXT, (side * 26.0, 0.0)
-            )
+            scene.Label(f"${name}$", (at, (low + high) / 2.0, 0), style.INK, style.TITLE_TEXT, (side, 0.0))
         )
     return records
 
@@ -258,24 +247,40 @@ def _texts(s: Shown) -> list[scene.Record]:
     heads = (r"$S = \exp(Y)$", r"$R = \exp(X)$", last)
     space = (r"$\mathfrak{se}(3)$", r"$\times\,\mathfrak{sym}(3)$")
     if s.map == "phi_so":
-        space = (r"$\mathfrak{so}(3) \times \mathrm{\mathbb{R}}^3$", r"$\times\,\mathfrak{sym}(3)$")
-    labels = [
-        *titles(_UPPER, heads),
-        scene.Label(r"$\mathrm{Aff}^{+}\!(3)$", (_SIDE, _ROWS[0], 0), style.INK, style.TEXT),
-        scene.Label(space[0], (_SIDE, _ROWS[1] + 24.0, 0), style.INK, style.TEXT),
-        scene.Label(space[1], (_SIDE, _ROWS[1] - 24.0, 0), style.INK, style.TEXT),
+        space = (r"$\mathfrak{so}(3)$", r"$\times\ \mathrm{\mathbb{R}}^3$", r"$\times\,\mathfrak{sym}(3)$")
+    names = [
+        scene.Label(text, (_SIDE, _ROWS[1] + 24.0 - 48.0 * k, 0), style.INK, style.TEXT)
+        for k, text in enumerate(space)
     ]
-    for box, text in zip(_LOWER, _below(s), strict=True):
-        labels.append(scene.Label(text, (box[0] + box[2] / 2.0, 108.0, 0), style.INK, _SMALL, anchor="cn"))
+    labels = [
+        *(replace(title, position=(title.position[0], _TITLES, 0.0)) for title in titles(_UPPER, heads)),
+        scene.Label(r"$\mathrm{Aff}^{+}\!(3)$", (_SIDE, _ROWS[0], 0), style.INK, style.TEXT),
+        *names,
+    ]
+    for box, texts in zip(_LOWER, _below(s), strict=True):
+        for k, text in enumerate(texts):
+            at = (box[0] + box[2] / 2.0, _NUMBERS[k], 0.0)
+            labels.append(scene.Label(text, at, style.INK if k == 0 else style.MARK, _SMALL, anchor="cn"))
     return [*labels, legend(_legend(s))]
 
 
-def _below(s: Shown) -> tuple[str, str, str]:
-    degrees = rf"|\mathbf{{x}}| = {np.degrees(np.linalg.norm(s.x)):.1f}^{{\circ}}"
+def _below(s: Shown) -> tuple[tuple[str, ...], ...]:
+    """The lines under each column: what is given, and what psi answers where that is another."""
+    degrees = [rf"${_turned(s.x, '')}$"]
+    moved = [rf"$\mathbf{{l}} = ({_triple(s.shift)})$"]
     if not s.same:
-        degrees += rf",\ \ |\mathbf{{x}}'| = {np.degrees(np.linalg.norm(s.back_x)):.1f}^{{\circ}}"
-    triple = r",\ ".join(_signed(float(v), plus="") for v in s.shift)
-    return r"$\mathrm{eigenvalues\ of}\ Y$", f"${degrees}$", rf"$\mathbf{{l}} = ({triple})$"
+        degrees.append(rf"${_turned(s.back_x, chr(39))}$")
+        if np.linalg.norm(s.back_shift - s.shift) > NOTHING:
+            moved.append(rf"$\mathbf{{l}}' = ({_triple(s.back_shift)})$")
+    return (r"$\mathrm{eigenvalues\ of}\ Y$",), tuple(degrees), tuple(moved)
+
+
+def _turned(x: np.ndarray, mark: str) -> str:
+    return rf"|\mathbf{{x}}{mark}| = {number(np.degrees(np.linalg.norm(x)), 1)}^{{\circ}}"
+
+
+def _triple(v: np.ndarray) -> str:
+    return r",\ ".join(_signed(float(x), plus="") for x in v)
 
 
 def _legend(s: Shown) -> str:
@@ -286,9 +291,9 @@ def _legend(s: Shown) -> str:
     )
     back = r"(\mathbf{x}, \mathbf{l}, Y)"
     if not s.same:
-        moved = r"\mathbf{l}'" if np.linalg.norm(s.back_shift - s.shift) > _NOTHING else r"\mathbf{l}"
-        back = rf"(\mathbf{{x}}', {moved}, Y),\ \ \varphi(\psi(\hat{{A}})) = \hat{{A}}"
-    return rf"${whole}$,   $\psi(\hat{{A}}) = {back}\ \mathrm{{to}}\ 10^{{-12}}$"
+        moved = r"\mathbf{l}'" if np.linalg.norm(s.back_shift - s.shift) > NOTHING else r"\mathbf{l}"
+        back = rf"(\mathbf{{x}}', {moved}, Y),\ \ {s.symbol}(\psi(\hat{{A}})) = \hat{{A}}"
+    return rf"${whole}$,   $\psi(\hat{{A}}) = {back}$"
 
 
 def _signed(value: float, plus: str = "+") -> str:

@@ -8,6 +8,7 @@ from lietool.figure import Drawing, Param, Plate, Time, figure
 from lietool.lie import affine, so3, sym
 
 from . import _parametrise_page as page
+from ._parametrise_shown import Shown, unit
 
 Vector = tuple[float, float, float]
 
@@ -24,9 +25,9 @@ _UPPER = np.triu_indices(3)
             title="The parametrisation of Aff+(3) and its inverse",
             equations=("7.1", "7.2", "7.3", "7.4", "7.5", "7.6", "7.7", "7.8"),
             caption=(
-                "Above, phi: the letter is stretched by exp(Y) along the three axes of Y, turned about the "
-                "axis x, and taken by d. Below, psi: what A is in the linear space, the logarithms of its "
-                "stretches, the rotation vector in the ball of radius pi, and l, in whose direction the "
+                "Above, phi_se: the letter is stretched by exp(Y) along the three axes of Y, turned about "
+                "the axis x, and taken by d. Below, psi: what A is in the linear space, the logarithms of "
+                "its stretches, the rotation vector in the ball of radius pi, and l, in whose direction the "
                 "origin sets out on its way to d."
             ),
         ),
@@ -34,8 +35,8 @@ _UPPER = np.triu_indices(3)
             title="psi gives the principal rotation",
             equations=("7.1", "7.2", "7.6", "7.8"),
             caption=(
-                "A turn by 250 degrees is the same as one by 110 the other way. phi takes x from outside of "
-                "the ball of radius pi; psi answers with the vector inside of it, and with another l, for "
+                "A turn by 250 degrees is the same as one by 110 the other way. phi_se takes x from outside "
+                "of the ball of radius pi; psi answers with the vector inside of it, and with another l, for "
                 "which A is the same. Such a choice cannot be continuous everywhere: where x leaves the "
                 "ball, psi(A) enters it at the opposite point."
             ),
@@ -45,9 +46,9 @@ _UPPER = np.triu_indices(3)
             title="The parametrisation with a plain translation",
             equations=("K 1", "K 2", "K 3", "K 7", "K 8"),
             caption=(
-                "The same stretch and rotation by the map of Kaji and Ochiai: the translation comes last, as "
-                "it is. The origin goes straight to l, and l does not depend on which of the rotation "
-                "vectors is taken."
+                "The same stretch and rotation by phi_so, the map of Kaji and Ochiai: the translation "
+                "comes last, as it is. The origin goes straight to l, and l does not depend on "
+                "which of the rotation vectors is taken."
             ),
             params={"map": "phi_so"},
         ),
@@ -63,7 +64,7 @@ def parametrise(
         0.7,
         1.5,
     ),
-    tilt: Annotated[float, Param("turn of these axes about the x axis", "deg", -180.0, 180.0)] = 30.0,
+    tilt: Annotated[float, Param("turn of these axes about the x axis", "deg", -180.0, 180.0)] = -20.0,
     map: Annotated[Literal["phi_se", "phi_so"], Param("of the book, or of Kaji and Ochiai")] = "phi_se",
 ) -> Drawing:
     """Parametrise: an affine transformation as rotation vector, translation and log-stretch, and back.
@@ -74,7 +75,7 @@ def parametrise(
     by more than 180 degrees, and the vector that psi gives back (dashed) is
     another one, inside of the ball.
     """
-    u = page.unit("axis", axis)
+    u = unit("axis", axis)
     x, shift, factors = np.radians(angle) * u, np.array(translation), np.array(stretch)
     Q = so3.rotation("x", np.radians(tilt))
     Y = (Q * np.log(factors)) @ Q.T
@@ -85,7 +86,7 @@ def parametrise(
     if error > _EXACT:
         raise ArithmeticError(f"parametrise: phi(psi(A)) differs from A by {error:g}")
     same = bool(np.abs(back - given).max() < _SAME * max(1.0, float(np.abs(given).max())))
-    shown = page.Shown(map, x, shift, Q, np.log(factors), A, back[:3], back[3:6], same)
+    shown = Shown(map, x, shift, Q, np.log(factors), A, back[:3], back[3:6], same)
     numbers = {
         "parameters": given,
         "A": A,
