@@ -1,7 +1,7 @@
 """The pages of `poisson`: handles and pins, two ways of blending, and three methods in a table."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,7 +38,7 @@ _SMOOTH = 4
 # Of others the radius, in lengths of the handles' axes.
 _ARC = 1.2
 # Around a part that is seen from near by, in its own size.
-_NEAR = 1.16
+_NEAR, _ASIDE = 1.16, 0.11
 # By how much of their distance faces that are turned over are drawn nearer than what lies in their place.
 _RAISED = 3e-4
 _COLORS = ((style.ROUTE_2, style.ROUTE_2_TEXT, (12.0, 7.0)), (style.ROUTE_1, style.ROUTE_1_TEXT, None))
@@ -64,7 +64,12 @@ def near(found: "Sequence[Method]", box: Box, margin: float) -> Camera:
     if case.close is None:
         return _camera(case, [m.result.vertices for m in found], box, margin)
     shapes = [case.look.upright(m.result.vertices[case.close]) for m in found]
-    return mesh_page.together(shapes, case.look.direction, box, _NEAR)
+    made = mesh_page.together(shapes, case.look.direction, box, _NEAR)
+    # More of what it grows from than of what is beyond it, where there is room.
+    wide = made.height * box[2] / box[3]
+    most = max(float(((V - made.target) @ made.axes[0]).max()) for V in shapes)
+    x, y, z = (made.target - np.clip(0.46 * wide - most, 0.0, _ASIDE * wide) * made.axes[0]).tolist()
+    return replace(made, target=(x, y, z))
 
 
 def shown(m: "Method", camera: Camera, box: Box) -> list[View]:
@@ -185,7 +190,7 @@ def handles(case: Case, kind: str, way: str, t: float) -> Drawing:
     result = case.solve(kind, WAYS[way], t)
     V, X = case.mesh.vertices, result.vertices
     total = case.weights(kind).sum(axis=1)
-    camera = _camera(case, [X], boxes[0], 1.02)
+    camera = _camera(case, [X], boxes[0])
     views = [
         View((*_weighted(case, total, camera), *_borders(case, V), *_pins(case, V)), camera, boxes[0]),
         View(tuple(_handles(case, 0.0, camera, False)), camera, boxes[0]),

@@ -5,12 +5,18 @@ import json
 import numpy as np
 import pytest
 from lietool.figures.ch7 import _poisson_case as case_
+from lietool.figures.ch7 import _poisson_close as close
 from lietool.figures.ch7 import _poisson_examples as examples
 
 from lietool import figure, paths
 from lietool.lie import so3, sym
 from lietool.mesh import solids, surface_io
 from lietool.mesh.surface import Mesh
+from lietool.render import mesh_lines, style
+from lietool.render import solids as solids_
+from lietool.render.camera import Camera, project
+from lietool.render.scene import Lines, Surface
+from lietool.render.theme import Mix
 
 POISSON = figure.load("poisson", (paths.FIGURES,))
 RNG = np.random.default_rng(2)
@@ -209,3 +215,29 @@ class TestRefused:
         np.savetxt(tmp_path / "w.txt", np.zeros((len(mesh.vertices), 2)))
         with pytest.raises(ValueError, match="paint must be weights of 1 handles, top; got 2 in"):
             POISSON.draw(paint=tmp_path / "w.txt", **own)
+
+
+class TestClose:
+    def test_what_is_seen_ends_at_the_frame(self):
+        box, camera = (100.0, 200.0, 300.0, 150.0), Camera((1.0, 0.4, 0.3), (0.1, 0.2, 0.3), 1.5)
+        V, F, N = solids_.sphere(2.0, (0.0, 0.3, 0.2), 24)
+        fading = Mix((style.INK, style.PAPER), np.tile([0.25, 0.75], (len(V), 1)), np.ones(len(V)))
+        records = [Surface(V, F, fading, N), Lines(mesh_lines.all_edges(V, F), style.INK)]
+        surface, lines = close.within(records, camera, box)
+        assert len(surface.color) == len(surface.vertices) == len(surface.normals)
+        used = np.unique(surface.faces)
+        seen = project(camera, box, surface.vertices[used])
+        for k in (0, 1):
+            assert seen[:, k].min() == pytest.approx(box[k], abs=0.3)
+            assert seen[:, k].max() == pytest.approx(box[k] + box[2 + k], abs=0.3)
+        ends = np.asarray(lines.points)[np.isfinite(lines.points).all(axis=1)]
+        at = project(camera, box, ends)[:, :2] - np.array(box[:2])
+        assert (at > 0.0).all() and (at < box[2:]).all() and len(ends) < 2 * len(F)
+
+    def test_all_of_it_or_nothing(self):
+        box, camera = (0.0, 0.0, 100.0, 100.0), Camera(target=(0.0, 0.0, 0.0), height=9.0)
+        V, F, N = solids_.sphere(1.0, (0.0, 0.0, 0.0), 12)
+        (whole,) = close.within([Surface(V, F, style.INK, N)], camera, box)
+        assert len(whole.faces) == len(F)
+        aside = V + 30.0 * camera.axes[0]
+        assert close.within([Surface(aside, F, style.INK, N)], camera, box) == []
