@@ -14,17 +14,17 @@ from lietool.render.plot import number
 from ._parametrise_shown import NOTHING, Shown
 
 _DIRECTION = (1.0, 0.5, 0.34)
-_COLUMNS = ((202.0, 246.0), (440.0, 340.0), (776.0, 400.0))
-_UPPER = tuple((x, 478.0, w, 346.0) for x, w in _COLUMNS)
-_LOWER = tuple((x, 164.0, w, 290.0) for x, w in _COLUMNS)
+_COLUMNS = ((196.0, 240.0), (446.0, 340.0), (780.0, 396.0))
+_UPPER = tuple((x, 458.0, w, 366.0) for x, w in _COLUMNS)
+_LOWER = tuple((x, 164.0, w, 284.0) for x, w in _COLUMNS)
 # The lines of titles, and of the numbers under the columns.
 _TITLES, _NUMBERS = 836.0, (134.0, 98.0)
 _SIDE, _ROWS = 104.0, (640.0, 290.0)
 _BALL, _SMALL = np.pi, style.SMALL_TEXT
 # Half of the axis of rotation, in heights of the letter; the axes of space beside l; where its ball has pi.
 _AXIS, _SPACE, _RIM = 0.95, 0.9, 0
-# Where the turn is drawn on the axis, beyond the letter, and its radius.
-_OUT, _RADIUS = 1.12, 0.3
+# Where the turn is drawn on the axis, beyond the letter, and its radius: up to half a turn, and beyond.
+_OUT, _RADIUS = 1.14, (0.42, 0.3)
 _LETTERS = {
     "rest": (style.BEFORE_EDGE, style.GREYS[1], style.BEFORE),
     "between": (style.BETWEEN_EDGE, style.GREYS[1], style.BETWEEN),
@@ -94,9 +94,11 @@ def _turn(s: Shown, camera: Camera) -> list[scene.Record]:
         return []
     near, far = (end[0] for end in _ends(s))
     center = _OUT / (_OUT + 0.16) * near
-    arc = mesh_look.turn(center, s.x, _RADIUS, camera, color=style.ALGEBRA_TEXT, text="")
+    angle = float(np.linalg.norm(s.x))
+    radius = _RADIUS[0] if angle < np.pi else _RADIUS[1]
+    arc = mesh_look.turn(center, s.x, radius, camera, color=style.ALGEBRA_TEXT, text="")
     records: list[scene.Record] = [scene.Lines([far, near], style.ALGEBRA, style.THIN, dash=(9.0, 6.0)), *arc]
-    angle, turned = float(np.linalg.norm(s.x)), arc[0]
+    turned = arc[0]
     if not isinstance(turned, scene.Tube):
         return records
     start = np.asarray(turned.points)[0]
