@@ -28,7 +28,7 @@ _MARK = 13.0
 _HAIR, _THICK = 1.0, 12.0
 _KEPT = 8
 # Where shapes along a ray stand: from left to right, their middle and height, the room between them.
-_ROW, _HIGH, _BETWEEN = (44.0, 1120.0), (606.0, 370.0), 30.0
+_ROW, _HIGH, _BETWEEN = (34.0, 1104.0), (606.0, 370.0), 30.0
 # A column has room for its texts.
 _TEXT = 306.0
 # The polygons below them.
@@ -161,7 +161,10 @@ def ray(family: Family, way: str, reach: float, phase: float) -> Drawing:
         views.append(View(tuple(records), camera, box))
         middle = column[0] + column[2] / 2.0
         page += _way(by, ats[k], weights[k], (middle, _GLYPH_AT))
-        page.append(look.line(rf"$\mathbf{{w}} = ({look.numbers(weights[k])})$", middle, 98.0))
+        # More than three do not fit into a line.
+        few = rf"$\mathbf{{w}} = ({look.numbers(weights[k])})$"
+        one_of = rf"$w_{{{led + 1}}} = {look.number(weights[k, led])}$"
+        page.append(look.line(few if len(family) <= 3 else one_of, middle, 98.0))
         away = f"off by up to {far[k, led]:.2f}"
         page.append(look.line(away if far[k, led] else f"target {led + 1}", middle, 52.0))
     rim = "at the corner" if np.max(weights[1]) == 1.0 else "at the rim"
@@ -213,11 +216,14 @@ def _way(by: controller.Controller, at: Array, weights: Array, middle: tuple[flo
     for k, corner in enumerate(by.corners):
         place = start + _GLYPH * np.append(corner, 0.0)
         # Beside the corner, not on a way that goes through it.
+        along = float(corner @ at) / max(float(np.linalg.norm(corner) * np.linalg.norm(at)), 1e-9)
         offset = (
             (20.0, 10.0 if corner[1] > 0.0 else -10.0)
             if abs(corner[0]) < 0.5
             else (8.0 * np.sign(corner[0]), -30.0)
         )
+        if len(by.corners) > 4 and along < 0.9:
+            offset = 24.0 * corner[0], 24.0 * corner[1]
         records.append(Label(rf"${k}$", place, style.INK, style.SMALL_TEXT, offset, "cc"))
     return records
 

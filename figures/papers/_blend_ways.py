@@ -63,7 +63,9 @@ def drawing(family: Family, way: str, weights: Array) -> Drawing:
     shapes = [family.rest, *family.targets[: many - 1]]
     upright = [family.upright(X) for X in shapes]
     if _has_tip(family):
-        upright.append(family.upright(np.array([[0.0, 0.0, _TOP + _PLUMB]])))
+        # Above the highest tip there is room for the vertical of another.
+        top = max(_TOP, *(float(X[:, 2].max()) for X in shapes))
+        upright.append(family.upright(np.array([[0.0, 0.0, top + _PLUMB]])))
     narrow = min(above[0][2], below[0][2])
     camera = mesh_page.together(upright, family.direction, (0.0, 0.0, narrow, tall), 1.06)
     colours = [look.REST, *map(look.target, range(many - 1))]
@@ -246,6 +248,6 @@ def _legend(family: Family, weights: Array, above: int, shown: list[Shown]) -> L
         text += f"; {len(family) - above} more targets are not drawn"
     if lacking := max(int(one.blended.fallback.sum()) for one in shown if one.blended):
         text += f"; hatched: {lacking} faces without a logarithm"
-    if family.solid is not None and _has_tip(family):
+    elif _has_tip(family):
         text += "; maps known" if family.maps is not None else "; maps from faces with normals"
     return mesh_page.legend(text)
