@@ -43,7 +43,7 @@ def _steps(s: Shown) -> list[scene.View]:
     corners = shape.solid()[0]
     seen = [
         [corners, corners @ s.S.T],
-        [corners @ s.S.T, corners @ (s.R @ s.S).T, *_ends(s)],
+        [corners @ s.S.T, corners @ (s.R @ s.S).T, *_ends(s), _reach(s)],
         [corners @ (s.R @ s.S).T, corners @ s.A[:3, :3].T + s.d, s.way(), s.shift[None]],
     ]
     cameras = each([np.concatenate(points) for points in seen], _DIRECTION, _UPPER, 1.1)
@@ -72,6 +72,13 @@ def _ends(s: Shown) -> tuple[np.ndarray, np.ndarray]:
     u = _axis(s)
     near = u if u[0] @ np.array(_DIRECTION) >= 0.0 else -u
     return (_OUT + 0.16) * near, -_AXIS * near
+
+
+def _reach(s: Shown) -> np.ndarray:
+    """Points (n, 3) that the turn does not reach beyond, where it goes all round its axis."""
+    center = _OUT / (_OUT + 0.16) * _ends(s)[0]
+    far = _RADIUS[1] * max(1.0, 0.2 * float(np.linalg.norm(s.x)) / np.pi + 0.85)
+    return center if np.linalg.norm(s.x) < np.pi else center + far * np.concatenate([np.eye(3), -np.eye(3)])
 
 
 def _letter(M: np.ndarray, at: np.ndarray, look: str) -> list[scene.Record]:
