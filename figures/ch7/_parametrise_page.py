@@ -108,12 +108,13 @@ def _turn(s: Shown, camera: Camera) -> list[scene.Record]:
     turned = arc[0]
     if not isinstance(turned, scene.Tube):
         return records
-    start = np.asarray(turned.points)[0]
+    points = np.asarray(turned.points)
+    start = points[0]
     if angle <= 2.0 * np.pi:
         stop = center + s.R @ (start - center)
         records.append(scene.Lines([start, center, stop], style.ALGEBRA_TEXT, style.HAIR))
     # Its name is at its middle, or below its beginning, where a long one has its free end.
-    at = np.asarray(turned.points)[len(turned.points) // 2] if angle < np.pi else start
+    at = points[len(points) // 2] if angle < np.pi else start
     name = rf"${number(np.degrees(angle), 1)}^{{\circ}}$"
     color = style.ALGEBRA_TEXT
     records.append(marks.beyond(name, at, at - center, camera, color=color, gap=26.0, room=50.0))
@@ -262,7 +263,10 @@ def _texts(s: Shown) -> list[scene.Record]:
         for k, text in enumerate(space)
     ]
     labels = [
-        *(replace(title, position=(title.position[0], _TITLES, 0.0)) for title in titles(_UPPER, heads)),
+        *(
+            replace(title, position=(np.asarray(title.position)[0], _TITLES, 0.0))
+            for title in titles(_UPPER, heads)
+        ),
         scene.Label(r"$\mathrm{Aff}^{+}\!(3)$", (_SIDE, _ROWS[0], 0), style.INK, style.TEXT),
         *names,
     ]

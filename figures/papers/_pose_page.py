@@ -33,6 +33,7 @@ _CURVES = (
 )
 # Points of the way of the centre, and directions in which a shape is measured.
 _BETWEEN, _OUTER = 121, 200
+_RULE = (style.RULE, style.HAIR)
 # Curves of determinants that differ by less, over the height of the plot, are one to the eye.
 _ALIKE = 0.02
 # A name stands below a curve that is as far above 0, page units, or above it.
@@ -112,10 +113,10 @@ def picture(s: Shown) -> scene.Picture:
     strips = [_poses(s, row) for row in s.rows]
     scale, middles = _layout(s, strips)
     rules = [
-        scene.Lines([axes.at(t, axes.ylim[0]), (axes.at(t, 0.0)[0], _STRIPS[1], 0.0)], style.RULE, style.HAIR)
+        scene.Lines(np.array([axes.at(t, axes.ylim[0]), (axes.at(t, 0.0)[0], _STRIPS[1], 0.0)]), *_RULE)
         for t in s.given.times
     ]
-    now = [axes.at(s.now, axes.ylim[0]), (axes.at(s.now, 0.0)[0], _STRIPS[1], 0.0)]
+    now = np.array([axes.at(s.now, axes.ylim[0]), (axes.at(s.now, 0.0)[0], _STRIPS[1], 0.0)])
     views = [scene.View((*rules, scene.Lines(now, style.ALGEBRA, style.THIN, dash=(7.0, 6.0))))]
     for poses, middle in zip(strips, middles, strict=True):
         views += [_view(s, p, scale, (float(axes.at(p.t, 0.0)[0]), middle)) for p in poses]
