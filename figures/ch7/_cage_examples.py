@@ -137,7 +137,7 @@ def _look(name: str, solid: solids.Solid) -> look_.Look:
         return look_.Look((1.0, 0.3, 0.3), 0.5, colors, colors, made, (style.INK, style.INK))
     if name == "bar":
         made = look_.patches(solid.faces, [solid.margin("front", "back")])
-        colors = (style.BETWEEN, style.AFTER)
+        colors = (style.AFTER, style.BETWEEN)
         return look_.Look((1.0, 0.3, 0.3), 0.5, colors, colors, made)
     made = look_.patches(solid.faces, [solid.margin("upper beak", "lower beak")])
     eyes = tuple(vertex for mark, vertex in solid.marks.items() if mark.startswith("eye"))

@@ -24,17 +24,19 @@ _BARE = (0.0, 1.0)
 # It is seen from so much further round than the shape, so that its normal is not seen from its tip.
 _ROUND, _ABOVE = 40.0, 14.0
 # The frame that shows the map, over the longest side of the tetrahedron.
-_FRAME = 0.30
+_FRAME = 0.26
+# Its axes have the same colours before and after, so that each is found again; paler before.
+_PALE = 0.62
 _SIDES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 _FACES = ((1, 0, 2), (0, 1, 3), (1, 2, 3), (2, 0, 3))
 _FOURTH = {
     "faces": (
-        r"$\mathbf{e}_1=p_2-p_1,\ \mathbf{e}_2=p_3-p_1$",
+        r"$\mathbf{e}_1=\mathbf{p}_2-\mathbf{p}_1,\ \mathbf{e}_2=\mathbf{p}_3-\mathbf{p}_1$",
         r"$\mathbf{n}=\mathbf{e}_1\times\mathbf{e}_2$",
-        r"$p_4=p_1+\mathbf{n}/\sqrt{|\mathbf{n}|}$",
+        r"$\mathbf{p}_4=\mathbf{p}_1+\mathbf{n}/\sqrt{|\mathbf{n}|}$",
     ),
-    "edges": (r"$p_3$, $p_4$: from the middle along", r"the mean normal, and across"),
-    "corners": (r"$p_4$: from $p_1$ along", "the mean normal of its faces"),
+    "edges": (r"$\mathbf{p}_3$, $\mathbf{p}_4$: from the middle", "along the mean normal,", "and across"),
+    "corners": (r"$\mathbf{p}_4$: from $\mathbf{p}_1$ along", "the mean normal of its faces"),
 }
 
 
@@ -57,7 +59,9 @@ def explain(
         frame = look.upright(frames[k])
         views.append(View(tuple(records), seen[k], _LARGE[k]))
         # The frame stands inside of the tetrahedron.
-        views.append(View(tuple(mesh_look.probe(frame, size, moved=k == 1)), seen[k], _LARGE[k]))
+        views.append(
+            View(tuple(mesh_look.probe(frame, size, moved=True, alpha=(_PALE, 1.0)[k])), seen[k], _LARGE[k])
+        )
     x = pages.rotation_vector(moved, shown)
     angle = float(np.degrees(np.linalg.norm(_rotation(A) if x is None else x)))
     name = pages.NAMES[choice.by]
@@ -69,7 +73,7 @@ def explain(
         Label(text, (175.0, y, 0.0), style.INK, style.SMALL_TEXT, anchor="cn")
         for text, y in (("at rest", 440.0), ("in the pose", 48.0))
     ]
-    views.append(View((*heads, *rows, *_numbers(A, angle, kind.name))))
+    views.append(View((*heads, *rows, *_down(), *_numbers(A, angle, kind.name))))
     found = {
         "shown": shown,
         "corners": kind.ends[shown],
@@ -129,9 +133,42 @@ def _tetrahedron(T: Array, kind: str, camera: Camera, moved: bool) -> list[Recor
     for k in range(4):
         away = T[k] - middle
         if np.linalg.norm(away) > 1e-9 * size:
-            text = rf"$p_{k + 1}'$" if moved else rf"$p_{k + 1}$"
+            text = rf"$\mathbf{{p}}_{k + 1}'$" if moved else rf"$\mathbf{{p}}_{k + 1}$"
             records.append(marks.beyond(text, T[k], away, camera, room=50.0))
+    return records + (_named(T, camera, moved) if kind == "faces" else [])
+
+
+def _named(T: Array, camera: Camera, moved: bool) -> list[Record]:
+    """The names of two sides of a face, and of its normal."""
+    dash = "'" if moved else ""
+    normal = rf"$\mathbf{{n}}{dash}/\sqrt{{|\mathbf{{n}}{dash}|}}$"
+    records: list[Record] = []
+    # The frame stands over the middle of the first side.
+    for text, (i, j), other, share in (
+        (rf"$\mathbf{{e}}_1{dash}$", (0, 1), 2, 0.18),
+        (rf"$\mathbf{{e}}_2{dash}$", (0, 2), 1, 0.5),
+        (normal, (0, 3), 1, 0.5),
+    ):
+        away, along = 0.5 * (T[i] + T[j]) - T[other], T[j] - T[i]
+        length = float(np.linalg.norm(along))
+        if length < 1e-9:
+            continue
+        across = away - (away @ along) / length**2 * along
+        place = T[i] + share * along
+        color = style.INK if j == 3 else style.GLASS_EDGE if not moved else style.AFTER_EDGE
+        gap, room = (62.0, 40.0) if j == 3 else (22.0, 0.0)
+        records.append(
+            marks.beyond(text, place, across, camera, color=color, size=style.SMALL_TEXT, gap=gap, room=room)
+        )
     return records
+
+
+def _down() -> list[Record]:
+    """The way from the one tetrahedron to the other."""
+    return [
+        Arrow((535.0, 482.0, 0.0), (535.0, 402.0, 0.0), style.INK, 2.2, 3.6),
+        Label(r"$\hat A_i$", (535.0, 446.0, 0.0), style.INK, style.TEXT, (18.0, 0.0), "lc"),
+    ]
 
 
 def _rotation(A: Array) -> Array:
@@ -144,17 +181,17 @@ def _numbers(A: Array, angle: float, kind: str) -> list[Record]:
     shown = np.round(A, 9) + 0.0
     s = np.linalg.svd(A[:3, :3], compute_uv=False)
     records: list[Record] = [
-        *brackets.matrix(shown, _MIDDLE - 0.5 * brackets.width(shown, _BARE), 600.0, bare=_BARE)
+        *brackets.matrix(shown, _MIDDLE - 0.5 * brackets.width(shown, _BARE), 620.0, bare=_BARE)
     ]
     turned = rf"turned by ${angle:.0f}^{{\circ}}$"
     if np.linalg.det(A[:3, :3]) <= 0.0:
         turned = "turned inside out"
     lines = (
-        (r"$\hat A_i\,p_k=p_k'$", 712.0, style.INK),
-        (turned, 452.0, style.INK),
-        ("stretched by", 404.0, style.INK),
-        (", ".join(f"${brackets.fixed(x)}$" for x in s), 362.0, style.INK),
-        *((text, 262.0 - 46.0 * k, style.MUTED) for k, text in enumerate(_FOURTH[kind])),
+        (r"$\hat A_i\,\mathbf{p}_k=\mathbf{p}_k'$", 732.0, style.INK),
+        (turned, 446.0, style.INK),
+        ("stretched by", 394.0, style.INK),
+        (", ".join(f"${brackets.fixed(x)}$" for x in s), 348.0, style.INK),
+        *((text, 246.0 - 52.0 * k, style.INK) for k, text in enumerate(_FOURTH[kind])),
     )
     return records + [
         Label(text, (_MIDDLE, y, 0.0), color, style.SMALL_TEXT, anchor="cn") for text, y, color in lines

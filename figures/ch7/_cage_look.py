@@ -1,5 +1,7 @@
 """How cages and the weights of their elements look."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -8,6 +10,7 @@ from lietool.mesh import solids, topology
 from lietool.render import mesh_lines, mesh_look, mesh_page, style
 from lietool.render.camera import Box, Camera
 from lietool.render.scene import Lines, Points, Record, Surface
+from lietool.render.theme import Mix
 
 from . import _probe_look as look_
 
@@ -25,16 +28,18 @@ def cage(
 ) -> list[Record]:
     """Return a cage, the edges behind and those between nearly coplanar faces fainter; one element marked."""
     F = elements.faces
+    width = style.CURVE * min(dots / 4.0, 1.0)
     records: list[Record] = [
         Surface(V, F, style.GLASS, material="flat", alpha=0.10),
         *edges(V, rest, F, camera),
-        Points(V[np.unique(F)], style.GLASS_EDGE, dots, shaded=False),
+        Points(V[np.unique(F)], style.MUTED, dots, shaded=False),
     ]
     for face in F[elements.around[shown]]:
         ring = V[np.append(face, face[0])]
-        # A dark rim, without which it would be lost in grey.
-        records.append(Lines(ring, style.INK, 2.2 * style.CURVE, lift=0.004))
-        records.append(Lines(ring, style.ARC, 1.2 * style.CURVE, lift=0.006))
+        # A dark rim, and white about it: in grey it would else be lost among the cage's edges.
+        records.append(Lines(ring, style.PAPER, 3.6 * width, lift=0.003))
+        records.append(Lines(ring, style.INK, 2.6 * width, lift=0.004))
+        records.append(Lines(ring, style.ARC, 1.6 * width, lift=0.006))
     if elements.name != "faces":
         ends = V[elements.points[shown]]
         records.append(Points(ends, style.MARK, 8.0, shaded=False))
@@ -62,15 +67,22 @@ def edges(V: Array, rest: Array, F: Index, camera: Camera, strength: float = 1.0
         gaps = np.full((len(ends), 1, 3), np.nan)
         points = np.concatenate([ends, gaps], axis=1).reshape(-1, 3)[:-1]
         if len(points):
-            records.append(Lines(points, style.GLASS_EDGE, width, strength * alpha, lift=_LIFT))
+            records.append(Lines(points, style.MUTED, width, strength * alpha, lift=_LIFT))
     return records
 
 
 def weighted(
-    V: Array, F: Index, weight: Array, high: float, look: look_.Look, camera: Camera, ground: float | None
+    V: Array,
+    F: Index,
+    weight: Array,
+    high: float,
+    look: look_.Look,
+    camera: Camera,
+    ground: float | None,
+    moved: bool = False,
 ) -> list[Record]:
-    """Return a shape coloured by weights."""
-    colors = mesh_look.weight_colors(weight, high)
+    """Return a shape coloured by weights, on grey at rest and on orange where it has moved."""
+    colors, edge = shades(weight, high, moved), style.AFTER_EDGE if moved else style.MUTED
     if look.dots:
         return mesh_look.cloud(V, colors, look.dots)
     N = solids.normals(V, F)
@@ -78,9 +90,15 @@ def weighted(
     return [
         *shadow,
         *mesh_look.surface(V, F, colors, normals=N),
-        *mesh_look.outline(V, F, camera, style.ALGEBRA_TEXT),
+        *mesh_look.outline(V, F, camera, edge),
         *mesh_look.eyes(V, N, look.eyes, look.eye),
     ]
+
+
+def shades(weight: Array, high: float, moved: bool) -> Mix:
+    """Return colours of weights (n,): of what has moved, none is its own orange."""
+    made = mesh_look.weight_colors(weight, high)
+    return replace(made, tones=(style.AFTER, *made.tones[1:])) if moved else made
 
 
 def hatched(V: Array, F: Index, spots: Mask | None, camera: Camera, box: Box) -> list[Record]:
@@ -105,12 +123,13 @@ def high(weight: Array) -> float:
     )
 
 
-def bar(weight: Array, top: float, title: str, x: float = 640.0, y: float = 66.0) -> list[Record]:
-    """Return the ramp of weights; from below 0 where some are."""
+def bar(weight: Array, top: float, title: str, x: float = 640.0, y: float = 74.0) -> list[Record]:
+    """Return the ramps of weights, at rest below and of what has moved above; from below 0 where some are."""
     low = -top if float(weight.min()) < -0.02 * top else 0.0
     ticks = [(v, f"${v:g}$") for v in ((low, 0.0, top) if low < 0.0 else (0.0, 0.5 * top, top))]
 
-    def colors(values: Array) -> object:
-        return mesh_look.weight_colors(values, top)
-
-    return mesh_page.color_bar((x, y, 240.0, 18.0), (low, top), ticks, title, colors)  # type: ignore[arg-type]
+    ramps = [lambda values, moved=moved: shades(values, top, moved) for moved in (False, True)]
+    return [
+        *mesh_page.color_bar((x, y + 14.0, 240.0, 14.0), (low, top), (), title, ramps[1]),
+        *mesh_page.color_bar((x, y, 240.0, 14.0), (low, top), ticks, "", ramps[0]),
+    ]

@@ -26,7 +26,7 @@ COMPARED = (
     ("maps of faces", {"coordinates": "maps", "by": "faces"}),
     ("maps of edges", {"coordinates": "maps", "by": "edges"}),
     ("maps of corners", {"coordinates": "maps", "by": "corners"}),
-    ("faces, blended linearly", {"coordinates": "maps", "by": "faces", "way": "linear"}),
+    ("faces, linearly", {"coordinates": "maps", "by": "faces", "way": "linear"}),
     ("mean value coordinates", {"coordinates": "mean-value"}),
     ("Green coordinates", {"coordinates": "green"}),
 )
@@ -58,7 +58,7 @@ def pair(
         X, C = look.upright(V), look.upright(C)
         low = min(ground, float(X[:, 2].min()))
         if paint == "weight":
-            body = cages.weighted(X, mesh.faces, moved.weight, top, look, seen, low)
+            body = cages.weighted(X, mesh.faces, moved.weight, top, look, seen, low, moved=k == 1)
         else:
             body = look.body(X, mesh.faces, seen, float(k), low)
         spots = moved.fallback if k else None
@@ -84,10 +84,12 @@ def said(case: case_.Case, t: float, bend: float, twist: float) -> str:
     """What has been done to the cage, in words."""
     if case.to is not None:
         return "moved" if t == 1.0 else f"moved, $t = {number(t, 2)}$"
+    words = [("bent", bend), ("twisted", twist)]
+    if case.name == "duck":
+        # A head leans and turns; which way, words say better than a sign.
+        words = [("leant forward" if bend > 0.0 else "leant back", abs(bend)), ("turned", abs(twist))]
     parts = [
-        f"{word} by ${number(t * angle, 0)}^{{\\circ}}$"
-        for word, angle in (("bent", bend), ("twisted", twist))
-        if abs(t * angle) >= 0.5
+        f"{word} by ${number(t * angle, 0)}^{{\\circ}}$" for word, angle in words if abs(t * angle) >= 0.5
     ]
     return ", ".join(parts) or "not moved"
 
@@ -141,7 +143,7 @@ def compare(
     case: case_.Case, choice: case_.Choice, look: look_.Look, at: tuple[float, float, float]
 ) -> Drawing:
     """The same pose by elements of three kinds, linearly, and by coordinates of vertices."""
-    boxes = [(x, y, 360.0, 288.0) for y in (522.0, 112.0) for x in (36.0, 420.0, 804.0)]
+    boxes = [(x, y, 360.0, 288.0) for y in (526.0, 122.0) for x in (36.0, 420.0, 804.0)]
     chosen = [replace(choice, **own) for _, own in COMPARED]  # type: ignore[arg-type]
     all_ = [case_.move(case, each, *at, 0) for each in chosen]
     mesh = case.mesh
@@ -161,13 +163,13 @@ def compare(
         labels.append(
             Label(title, (x, box[1] + box[3] + 32.0, 0.0), style.INK, style.TITLE_TEXT, anchor="cn")
         )
-        labels.append(Label(text, (x, box[1] - 18.0, 0.0), style.MUTED, style.SMALL_TEXT, anchor="cn"))
+        labels.append(Label(text, (x, box[1] - 18.0, 0.0), style.INK, style.SMALL_TEXT, anchor="cn"))
     views.append(
         View(
             (
                 *labels,
                 mesh_page.legend(
-                    "stretch: the larger of $s_1$ and $1/s_2$, not exceeded on 95 % of the surface", 34.0
+                    "stretch: the larger of $s_1$ and $1/s_2$, not exceeded on 95 % of the surface"
                 ),
             )
         )
@@ -183,4 +185,4 @@ def _measured(mesh: Mesh, X: Array, volumes: list[float], stretches: list[float]
         return f"{len(X)} points"
     volumes.append(volume(mesh, X))
     stretches.append(distortion.measure(mesh.vertices, mesh.faces, X).summary()["worst"].most_of)
-    return f"volume {volumes[-1]:.2f}, stretch {stretches[-1]:.2f}"
+    return rf"volume $\times\,{volumes[-1]:.2f}$, stretch {stretches[-1]:.2f}"

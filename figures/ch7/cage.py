@@ -23,7 +23,9 @@ _MAPS = ("coordinates", "maps")
             caption=(
                 "A cactus in a cage, which is bent and twisted. Every face of the cage has a map, and every "
                 "point moves by the blend of these. The colour is the weight of one face (outlined): it is "
-                "large in front of the face and falls off with the cube of the distance from its middle."
+                "large in front of the face and falls off with the cube of the distance from its middle. "
+                "Where it is nothing, the shape is grey at rest and orange in the pose. At the bright stripe "
+                "below the face the bent shape comes a little out of its cage."
             ),
         ),
         "B7.6": Plate(
@@ -32,8 +34,8 @@ _MAPS = ("coordinates", "maps")
             caption=(
                 "A face with its normal is a tetrahedron. The only affine map that takes it from where it is "
                 "at rest to where it is in the pose is the map of this face: in numbers, and as a frame, "
-                "which turns and is no longer of unit vectors. The normal's length is the root of twice the "
-                "area, so that a cage grown by some factor gives maps that grow by it."
+                "pale at rest, which turns and is no longer of unit vectors. The normal's length is the root "
+                "of twice the area, so that a cage grown by some factor gives maps that grow by it."
             ),
             params={"view": "explain"},
         ),
@@ -43,8 +45,8 @@ _MAPS = ("coordinates", "maps")
             caption=(
                 "The same coarse cage bent by 120 degrees. Maps follow the cage's sides closely, and where "
                 "few faces have to make the arc, each shows: faces and corners leave dents, edges fewer. "
-                "Blended linearly the bar loses more volume. Mean value coordinates follow the kinks of the "
-                "cage; Green coordinates stretch the least, and leave the cage's sides."
+                "Blended linearly the bar loses a little more volume. Mean value coordinates follow the "
+                "kinks of the cage; Green coordinates stretch the least."
             ),
             params={"view": "compare", "example": "bar", "bend": 120.0, "twist": 0.0},
         ),
