@@ -156,7 +156,7 @@ def _named(T: Array, camera: Camera, moved: bool) -> list[Record]:
         across = away - (away @ along) / length**2 * along
         place = T[i] + share * along
         color = style.INK if j == 3 else style.GLASS_EDGE if not moved else style.AFTER_EDGE
-        gap, room = (62.0, 40.0) if j == 3 else (22.0, 0.0)
+        gap, room = (62.0 if j == 3 else 22.0), 40.0
         records.append(
             marks.beyond(text, place, across, camera, color=color, size=style.SMALL_TEXT, gap=gap, room=room)
         )
