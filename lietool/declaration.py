@@ -190,6 +190,7 @@ def _read_signature(function: Callable[..., Drawing]) -> Iterable[Parameter]:
 def _check_only(figure: Figure) -> None:
     choices = {parameter.name: parameter.param.choices for parameter in figure.parameters}
     said = {f"parameter {p.name}: only must be another": p.param.only for p in figure.parameters}
+    said |= {f"parameter {p.name}: also must be another": p.param.also for p in figure.parameters}
     if figure.mesh != EVERY:
         said["mesh must be True, or a"] = figure.mesh
     for what, only in said.items():

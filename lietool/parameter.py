@@ -24,9 +24,10 @@ class Param:
 
     Components of a vector that `help` names, as in ``"start (w, x, y, z)"``, are named in messages too.
     `only` names another parameter and those of its choices with which this one has a part in the picture:
-    ``only=("view", "rings")``; `unless` names those beside which it has none when they are given: one's own
-    files, ``unless=("mesh",)``.  A file may also be given without its option: ``positional=1`` is the first
-    word on the command line that belongs to no option; files, which are the last, take all that follow.
+    ``only=("view", "rings")``, and `also` one more of the kind; `unless` names those beside which it has
+    none when they are given: one's own files, ``unless=("mesh",)``; `needs` one without which it has none.
+    A file may also be given without its option: ``positional=1`` is the first word on the command line that
+    belongs to no option; files, which are the last, take all that follow.
     """
 
     help: str
@@ -35,7 +36,9 @@ class Param:
     high: float | None = None
     choices: tuple[str, ...] = ()
     only: tuple[str, ...] = ()
+    also: tuple[str, ...] = ()
     unless: tuple[str, ...] = ()
+    needs: str = ""
     positional: int = 0
 
 
@@ -75,9 +78,10 @@ class Parameter:
     def where(self) -> str:
         """When it has a part, in words: ``"with --view rings"``, ``"without --mesh"``, or nothing."""
         words = []
-        if self.param.only:
-            name, *choices = self.param.only
+        for name, *choices in filter(None, (self.param.only, self.param.also)):
             words.append(f"with {_option(name)} {' or '.join(choices)}")
+        if self.param.needs:
+            words.append(f"with {_option(self.param.needs)}")
         if self.param.unless:
             words.append(f"without {' and '.join(map(_option, self.param.unless))}")
         return ", ".join(words)
@@ -98,10 +102,11 @@ class Parameter:
             # What is not given is None, or empty.
             if values[name]:
                 return f"has no part in the picture beside {_option(name)}. Leave out one of them"
-        if param.only and values[param.only[0]] not in param.only[1:]:
-            name, *choices = param.only
-            must = f"with {_option(name)} {' or '.join(choices)}"
-            return f"has a part in the picture only {must}. Leave it out, or write that"
+        musts = [f"beside {_option(param.needs)}"] if param.needs and not values[param.needs] else []
+        for name, *choices in filter(None, (param.only, param.also)):
+            musts += [] if values[name] in choices else [f"with {_option(name)} {' or '.join(choices)}"]
+        if musts:
+            return f"has a part in the picture only {musts[0]}. Leave it out, or write that"
         return ""
 
     @property
@@ -267,11 +272,10 @@ def together(read: Iterable[Parameter]) -> tuple[Parameter, ...]:
     # What is not given must be seen to be so.
     empty = {parameter.name for parameter in parameters if parameter.default in (None, (), "")}
     for parameter in parameters:
-        if not set(parameter.param.unless) <= empty - {parameter.name}:
-            raise ValueError(
-                f"parameter {parameter.name}: unless must be other parameters without a default; "
-                f"got {parameter.param.unless}. Correct it"
-            )
+        files = {*parameter.param.unless, parameter.param.needs} - {""}
+        if not files <= empty - {parameter.name}:
+            must = f"must be other parameters without a default; got {', '.join(sorted(files))}. Correct it"
+            raise ValueError(f"parameter {parameter.name}: unless and needs {must}")
     return parameters
 
 

@@ -157,7 +157,7 @@ def test_a_malformed_vector_is_refused(project: Path, text: str) -> None:
             _tiny(
                 'a: Annotated[float, Param("a", unless=("b",))] = 1.0, b: Annotated[float, Param("b")] = 1.0'
             ),
-            "parameter a: unless must be other parameters without a default; got ('b',)",
+            "parameter a: unless and needs must be other parameters without a default; got b",
         ),
         (_tiny(_PART.format('("view",)')), "parameter x: only must be another parameter and some of its"),
         (_tiny(_PART.format('("view", "c")')), "choices; got ('view', 'c'). Correct it"),

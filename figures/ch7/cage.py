@@ -84,7 +84,7 @@ def cage(
     ] = "maps",
     by: Annotated[
         Literal["faces", "edges", "corners"],
-        Param("elements of the cage that have maps", only=("view", "pair", "explain")),
+        Param("elements of the cage that have maps", only=("view", "pair", "explain"), also=_MAPS),
     ] = "faces",
     way: Annotated[
         Literal["phi-so", "phi-se", "alexa", "polar-quaternion", "dual-quaternion", "linear"],
@@ -148,10 +148,15 @@ def cage(
         Param("its cage, a closed mesh; one is made where there is none: --give rest-cage writes it"),
     ] = None,
     to: Annotated[Path | None, Param("the same cage moved; bent and twisted where there is none")] = None,
-    faces: Annotated[int, Param("of the cage that is made, at most", low=12, high=2000)] = 120,
+    faces: Annotated[int, Param("of the cage that is made, at most", low=12, high=2000, needs="shape")] = 120,
     margin: Annotated[
         float,
-        Param("by which it keeps from the shape, over the diagonal of the shape's box", low=0.002, high=0.5),
+        Param(
+            "by which it keeps from the shape, over the diagonal of the shape's box",
+            low=0.002,
+            high=0.5,
+            needs="shape",
+        ),
     ] = 0.02,
 ) -> Drawing:
     """A shape moved by a cage around it: every face of the cage has an affine map, and points blend them.
