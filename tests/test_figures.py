@@ -116,7 +116,7 @@ def test_goldens_and_labels_belong_to_plates():
 
 
 def sampled(figure_: Figure) -> Iterator[dict[str, object]]:
-    """Each plate, and each with one parameter that has a part in it at an end of its range or another choice."""
+    """Each plate, and each with one parameter that has a part at an end of its range or at another choice."""
     for plate_id in figure_.plates:
         base = figure_.plate_params(plate_id)
         yield base
