@@ -17,16 +17,10 @@ from lietool.render.theme import Mix
 
 from ._poisson_case import WAYS, Case, Measured, guided, turned
 from ._poisson_close import framed, within
-from ._probe_pages import WORDS
+from ._probe_pages import WORDS as NAMES
 
 Array = NDArray[np.float64]
 
-NAMES = WORDS | {
-    "phi_so": r"rotation vectors, $\varphi_{so}$",
-    "phi_se": r"rotation vectors, $\varphi_{se}$",
-    "linear": "matrices",
-}
-"""Ways of blending in words."""
 # Arcs of turns by less, degrees, are not drawn.
 _LEAST = 0.5
 # The last line of a page.

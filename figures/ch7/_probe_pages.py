@@ -17,12 +17,12 @@ from ._probe_case import Case, Moment, Moving
 Array = NDArray[np.float64]
 
 WORDS = {
-    "phi_so": r"rotation vectors, $\phi^{\mathrm{SO}}$",
-    "phi_se": r"rotation vectors, $\phi^{\mathrm{SE}}$",
+    "phi_so": r"rotation vectors, $\varphi_{so}$",
+    "phi_se": r"rotation vectors, $\varphi_{se}$",
     "alexa": "matrix logarithm",
     "polar_quaternion": "quaternions",
     "dual_quaternion": "dual quaternions",
-    "linear": "linear blending",
+    "linear": "matrices",
 }
 # A probe that turns by less, degrees, has no arc: its axes say by how much.
 _LEAST = 180.0
