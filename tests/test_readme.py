@@ -9,6 +9,7 @@ from click.testing import CliRunner
 
 from lietool import figure
 from lietool.cli import command
+from lietool.deform import probe_io
 
 ROOT = Path(__file__).parent.parent
 TEXT = (ROOT / "README.md").read_text()
@@ -44,6 +45,13 @@ def test_the_example_is_a_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     result = CliRunner().invoke(command, ["turn", "--theta", "90", "--json"])
     assert result.exit_code == 0, result.output
     assert '"rotation"' in result.output
+
+
+def test_the_file_of_probes_is_one(tmp_path: Path):
+    (example,) = blocks("toml")
+    (tmp_path / "p.toml").write_text(example)
+    probes = probe_io.read(tmp_path / "p.toml")
+    assert len(probes.names) == 2 and example.count("[[probe]]") == 2
 
 
 def test_its_pictures_are_goldens():
