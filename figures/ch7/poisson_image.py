@@ -35,7 +35,7 @@ _MOST = 1100
                 "A balloon on a bright day, a sky at dusk, and the field g': inside the red line the "
                 "gradient of the one, outside that of the other; drawn as a relief lit from the upper left, "
                 "grey where g' is 0. Below, the pixels copied, with a seam, and the image whose gradient is "
-                "nearest to g': no seam, and the balloon in the evening's light. In its shade three per cent "
+                "nearest to g': no seam, and the balloon in the evening's light. In its shade four per cent "
                 "of what is pasted would be darker than black."
             ),
         ),
