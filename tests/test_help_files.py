@@ -70,8 +70,8 @@ def test_the_commands_of_cage(mesh: Path, tmp_path: Path, monkeypatch: pytest.Mo
     make, move = (line.split()[1:] for line in lines.splitlines())
     result = CliRunner().invoke(command, make)
     assert result.exit_code == 0, result.output
-    Path("rest.obj").rename("moved.obj")
-    Path("rest.obj").write_bytes(Path("moved.obj").read_bytes())
+    Path("cage.obj").rename("moved.obj")
+    Path("cage.obj").write_bytes(Path("moved.obj").read_bytes())
     result = CliRunner().invoke(command, move)
     assert result.exit_code == 0, result.output
     # The cage has not been moved.

@@ -170,8 +170,8 @@ def cage(
     A shape of your own: have a cage made, move its vertices in a modeller, which
     has to keep their order, and give both::
 
-        lietool cage my.obj --give rest-cage -o rest.obj
-        lietool cage my.obj --cage rest.obj --to moved.obj -o out.obj
+        lietool cage my.obj --give rest-cage -o cage.obj
+        lietool cage my.obj --cage cage.obj --to moved.obj -o out.obj
     """
     if shape is None:
         own.alone(cage, to)
