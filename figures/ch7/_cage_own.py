@@ -61,8 +61,8 @@ def _case(
         rest = Mesh(made.vertices, made.faces)
         many = f", in {made.components} parts" if made.components > 1 else ""
         notes.append(
-            f"no cage is given; one of {len(made.faces)} faces is made{many}. To move it yourself, write it "
-            "by --give rest-cage -o FILE.obj"
+            f"no cage is given; one of {len(made.faces)} faces is made{many}. --give rest-cage -o FILE.obj "
+            "writes it, to be moved by you"
         )
     else:
         rest = surface_io.read(cage)

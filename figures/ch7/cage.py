@@ -166,6 +166,12 @@ def cage(
     weight of a face is large next to it, and nowhere in front of it. Points
     outside of the cage move too, by the faces that see them from within, or by the
     nearest face with Green coordinates; they are counted and told.
+
+    A shape of your own: have a cage made, move its vertices in a modeller, which
+    has to keep their order, and give both::
+
+        lietool cage my.obj --give rest-cage -o cage.obj
+        lietool cage my.obj --cage cage.obj --to moved.obj -o out.obj
     """
     if shape is None:
         own.alone(cage, to)

@@ -106,6 +106,24 @@ def poisson(
     transformations, and the equation joins the faces again. With quaternions a
     handle that turns by 400 degrees turns its surroundings by 40; the
     parametrisation by rotation vectors follows it all the way.
+
+    A file for --handles, in the units of the mesh and in degrees::
+
+        [[pin]]
+        box = { low = [-1, -1, 0], high = [1, 1, 0.2] }
+
+        [[handle]]
+        name = "tip"
+        ball = { centre = [0, 0, 2], radius = 0.3 }
+        motion = { axis = [0, 0, 1], degrees = 400, translation = [0, 0, 0.5] }
+
+    A pin or handle has the vertices in a box or in a ball; or those of a list,
+    vertices = [17, 18], which count from 0; or those where painted numbers are
+    large, attribute = { name = "held", above = 0.5 }. A motion is about the middle
+    of the handle's vertices, or about its centre = [x, y, z]. It may say axis and
+    degrees; turns, whole ones on top of these; scale, a number or three; or
+    stretch, a symmetric matrix; translation; or matrix, 4 rows of 4, which moves
+    space. As .json: {"pin": [{"vertices": [0]}], "handle": [...]}.
     """
     given = own.case(mesh, handles, paint)
 

@@ -188,6 +188,36 @@ def probe(
     probes their motions are blended. Rotations are added up as vectors, axis times
     angle, so that a turn by more than 360 degrees means what it says; quaternions
     and matrices forget whole turns. Probes at rest are pale, moved ones coloured.
+
+    A file of probes for --probes, in the units of the shape and in degrees::
+
+        [[probe]]
+        name = "foot"               # it is not said to move, and stays
+        centre = [0, 0, 0]
+
+        [[probe]]
+        name = "head"
+        centre = [0, 0, 2]
+        current = { axis = [0, 0, 1], degrees = 400, translation = [0, 0, 0.5] }
+
+    What current may say: axis and degrees; turns, whole ones on top of these;
+    scale, one number or three along the probe's axes; or stretch, a symmetric
+    matrix in space; translation of the centre; or matrix, 4 rows of 4, where the
+    probe's frame is now. At rest a probe may have, beside its centre, a rotation,
+    of axis and degrees or 3 rows of 3; or for both a frame, 4 rows of 4.
+
+    A sequence for --poses, by the names of the probes; each pose is a picture of
+    the film, or with --seconds and --fps so many are spread over them::
+
+        fps = 24
+
+        [[pose]]
+        head = { axis = [0, 0, 1], degrees = 0 }
+
+        [[pose]]
+        head = { axis = [0, 0, 1], degrees = 400 }
+
+    As .json: {"probe": [{"name": "foot", "centre": [0, 0, 0]}, ...]}.
     """
     case = example_.example(example, turn) if shape is None else own.shape(shape, turn)
     case = own.poses(own.probes(case, probes, probe, turn), poses)

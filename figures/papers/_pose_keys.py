@@ -77,8 +77,10 @@ def read(path: Path, centre: np.ndarray, size: float) -> Given:
         entry.only(("time", *probe_motion.KEYS))
         times.append(float(entry.numbers("time", ())) if "time" in entry.data else float(k))
         motion = {name: part for name, part in entry.data.items() if name != "time"}
-        frame, turns, stated = probe_motion.read(Table(place, label, motion), rest)
-        A.append(pose.relative(rest, frame))
+        # A matrix moves space, as that of a handle does, so that 1 leaves a mesh where it is.
+        before = np.eye(4) if "matrix" in motion else rest
+        frame, turns, stated = probe_motion.read(Table(place, label, motion), before)
+        A.append(pose.relative(before, frame))
         _oriented(entry, A[-1])
         _within(entry, A[-1], c, size)
         if stated:

@@ -74,10 +74,30 @@ def pose(
     flattened, and red where it is inside out. The plot says so in numbers: det A
     is the volume, in that at rest.
 
-    A file of keys has, as many times as there are keys, [[key]] and below it any
-    of: time, translation, axis, degrees, turns, scale, stretch or matrix, as in a
-    file of probes; and centre once, the point that is turned about. The mesh
-    that is written is that of the upper row at the moment t.
+    The mesh that is written is that of the upper row at the moment t.
+
+    A file for --keys, in the units of the mesh and in degrees::
+
+        centre = [0, 0, 1]          # turned about; the middle unless given
+
+        [[key]]
+        translation = [-2, 0, 0]
+
+        [[key]]
+        axis = [0, 0, 1]
+        degrees = 150
+
+        [[key]]
+        time = 3                    # 0, 1, 2, ... unless given
+        axis = [0, 0, 1]
+        degrees = 300
+        scale = 0.8
+        translation = [2, 0, 0]
+
+    A key is where the mesh goes from where it lies in its own file. It may say axis
+    and degrees; turns, whole ones on top of these; scale, a number or three along
+    x, y and z; or stretch, a symmetric matrix; translation; or matrix, 4 rows of
+    4, which moves space. As .json: {"key": [{"translation": [-2, 0, 0]}, ...]}.
     """
     body, normals = _body(mesh, shape)
     V = body.vertices

@@ -26,6 +26,8 @@ from lietool.mesh import laplacian, topology
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
+
+_KEEP = "Keep the order of the rest, as files .obj, .ply and .off do; .glb and .stl may not."
 Stated = Mapping[int, Mapping[int, ArrayLike]]
 
 
@@ -208,12 +210,13 @@ def same_faces(F: ArrayLike, others: Sequence[ArrayLike]) -> None:
     for k, other in enumerate(others):
         G = np.asarray(other)
         if G.shape != F.shape:
-            topology.fail(where, "target", f"a mesh of the {len(F)} faces of the rest", f"{len(G)} in {k}")
+            must = f"a mesh of the {len(F)} faces of the rest"
+            topology.fail(where, "target", must, f"{len(G)} in {k}", _KEEP)
         differ = (G != F).any(axis=1)
         if differ.any():
             j = int(np.argmax(differ))
             sets = [{tuple(sorted(f)) for f in faces.tolist()} for faces in (F, G)]
-            remedy = "They are the same in another order: reorder them." if sets[0] == sets[1] else ""
+            remedy = "They are the same in another order: reorder them." if sets[0] == sets[1] else _KEEP
             got = f"face {j} of target {k} with vertices {G[j].tolist()} instead of {F[j].tolist()}"
             topology.fail(where, "target", "a mesh of the faces of the rest", got, remedy)
 

@@ -1,6 +1,7 @@
 """The command of a figure: its parameters and plates as options, help and completion."""
 
 import math
+import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, cast
 
@@ -28,12 +29,14 @@ class _Command(click.Command):
 
     def __init__(self, figure: Figure) -> None:
         self.figure = figure
+        about, files = _texts(figure.help)
         super().__init__(
             figure.name,
             callback=self._run,
             params=[*_words(figure), *map(_option, figure.parameters), *_common(figure)],
-            help=figure.help,
+            help=about,
             short_help=figure.summary,
+            epilog=files,
         )
 
     def _run(
@@ -73,6 +76,18 @@ class _Command(click.Command):
             if rows := _described(self.figure) if title == "Plates" else sections[title]:
                 with formatter.section(title):
                     formatter.write_dl(rows)
+
+
+def _texts(text: str) -> tuple[str, str]:
+    """What help begins with, and what it ends with: from the first `::` on, files line by line."""
+    paragraphs = text.split("\n\n")
+    first = next((k for k, paragraph in enumerate(paragraphs) if paragraph.endswith("::")), len(paragraphs))
+    shown = [
+        # What follows this mark is not wrapped.
+        "\b\n" + paragraph if paragraph.startswith("    ") else re.sub("::$", ":", paragraph)
+        for paragraph in paragraphs[first:]
+    ]
+    return "\n\n".join(paragraphs[:first]), "\n\n".join(shown)
 
 
 def _words(figure: Figure) -> Iterator[click.Argument]:

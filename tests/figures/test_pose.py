@@ -113,6 +113,15 @@ class TestFiles:
             right = Rotation.from_rotvec([0.0, 0.0, np.pi]).as_matrix()
             assert found.numbers["A"][:3, :3] == pytest.approx(right, abs=1e-9)
 
+    def test_a_matrix_moves_space(self, mesh, keys):
+        """Whatever is turned about: 1 leaves the mesh where its file has it."""
+        one, lifted = np.eye(4), np.eye(4)
+        lifted[2, 3] = 2.0
+        file = keys({"centre": [5, 0, 0], "key": [{"matrix": one.tolist()}, {"matrix": lifted.tolist()}]})
+        V = surface_io.read(mesh).vertices
+        assert drawn(mesh=mesh, keys=file, t=0.0).mesh.vertices == pytest.approx(V)
+        assert drawn(mesh=mesh, keys=file, t=0.5).mesh.vertices == pytest.approx(V + np.array([0, 0, 1]))
+
     def test_times_and_toml(self, mesh, keys):
         file = keys("[[key]]\ntime = 2\n[[key]]\ntime = 6\ntranslation = [8, 0, 0]\n", "keys.toml")
         found = drawn(mesh=mesh, keys=file, t=0.25)
