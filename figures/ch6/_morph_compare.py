@@ -236,7 +236,7 @@ def _plot(strips: Sequence[Strip], error: list[Array], most: float) -> list[scen
         scene.Label("area / mean area", name, style.INK, style.SMALL_TEXT, anchor="cn", halo=False)
     )
     # All of one size are taken or none: which comes first is a matter of rounding.
-    large = x > np.sort(x)[-12] - 1e-6
+    large = x > np.sort(x)[-12:][0] - 1e-6
     heights = [float(axes.at(right, max(np.median(v[large]), low))[1]) for v in y]
     # Named beside the largest triangles, but not over each other.
     apart = 34.0 - abs(heights[0] - heights[1])
