@@ -48,8 +48,8 @@ def test_the_files_of_probe(tmp_path: Path, mesh: Path) -> None:
     (tmp_path / "w.toml").write_text(weighed)
     words = ["probe", str(mesh), "--probes", str(tmp_path / "w.toml"), "--json"]
     result = CliRunner().invoke(command, words)
-    # Of its six tetrahedra only the lowest and the highest have a probe.
-    assert result.exit_code == 2 and "with 4 such parts, that of vertex 4 and 3 more" in result.output
+    # Of its six tetrahedra three have a probe.
+    assert result.exit_code == 2 and "with 3 such parts, that of vertex 4 and 2 more" in result.output
     (tmp_path / "w.toml").write_text(weighed.replace('"harmonic"', '"harmonic"\nloose = "follow"'))
     result = CliRunner().invoke(command, words)
     assert result.exit_code == 0, result.output

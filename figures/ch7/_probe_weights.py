@@ -138,7 +138,8 @@ def _smooth(mesh: Mesh, probes: Probes, recipe: Recipe) -> Array:
         raise ValueError(
             f"weights must be by distance where a part of the shape has no probe; got {recipe.kind}, with "
             f"{len(bare)} such parts, {laplacian.listed('that of vertex', bare, 1)}. Put a probe on each, or "
-            "let probes hold more, --hold 0.3; or of your own shape, --loose follow"
+            "let probes hold more, or of your own shape write --loose follow, in a table "
+            'loose = "follow"'
         )
     make = harmonic.harmonic if recipe.kind == "harmonic" else harmonic.biharmonic
     return harmonic.follow(mesh.vertices, mesh.faces, sets, make)
