@@ -13,7 +13,7 @@ from lietool.mesh import solids, surface_io
 from lietool.mesh.surface import Mesh
 
 PROBE = figure.load("probe", (paths.FIGURES,))
-MOVED = "name=a centre=0,0,0;name=b centre=0,0,2 axis=0,1,0 degrees=80 scale=1.5 translation=0.2,0,0.1"
+MOVED: str = "name=a centre=0,0,0;name=b centre=0,0,2 axis=0,1,0 degrees=80 scale=1.5 translation=0.2,0,0.1"
 # The same about the origin for both: a motion of all space.
 EQUAL = [
     f"name={n} centre=0,0,{z} axis=0,0,1 degrees=70 scale=1.3 translation=0.5,0,{0.3 * z!r}"
@@ -67,7 +67,7 @@ def test_as_the_library(tube, kind):
     sets = [np.flatnonzero(z < 0.1), np.flatnonzero(z > 1.9)]
     w = getattr(harmonic, kind)(mesh.vertices, mesh.faces, sets)
     assert np.allclose(w.sum(axis=1), 1.0)
-    given = probe_io.from_words(MOVED.split(";"))
+    given = probe_io.from_words(list[str](MOVED.split(";")))
     expected = probe.solve(probe.prepare(mesh.vertices, given.rest, w), given.current).points
     assert np.allclose(moved(tube, probe=MOVED, weights=kind, hold=0.0), expected, atol=1e-12)
 
@@ -85,7 +85,7 @@ def test_held_vertices_do_as_the_probe_does():
     drawing = PROBE.draw(weights="harmonic")
     V, mesh = solids.duck().vertices, drawing.mesh
     assert mesh is not None
-    for rest, now in zip(drawing.numbers["rest"], drawing.numbers["frames"], strict=True):
+    for rest, now in zip(*(np.asarray(drawing.numbers[key]) for key in ("rest", "frames")), strict=True):
         k = np.argmin(np.linalg.norm(V - rest[:3, 3], axis=1))
         A = now @ np.linalg.inv(rest)
         assert np.allclose(mesh.vertices[k], A[:3, :3] @ V[k] + A[:3, 3], atol=1e-9)
@@ -102,7 +102,7 @@ def test_without_weights_of_rotation_nothing_turns(tube):
 
 def test_parts_as_the_library(tube):
     V = surface_io.read(tube).vertices
-    given = probe_io.from_words(MOVED.split(";"))
+    given = probe_io.from_words(list[str](MOVED.split(";")))
     size = 0.5 * float(np.linalg.norm(np.ptp(V, axis=0)))
     r = weights.distances(V, given.rest[:, :3, 3])
     base = weights.partition_of_unity(weights.inverse_distance(r))
