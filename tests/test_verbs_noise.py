@@ -1,4 +1,4 @@
-"""`lietool figures noise`: on one plate of ours in few ways, and on a project whose figure cannot be relied on."""
+"""`lietool figures noise`: on a project whose figure can be told to depend on the processor."""
 
 import json
 import os

@@ -260,14 +260,8 @@ def _print(
     alarms = [row for row in rows if row.alarm]
     said = defaultdict(list)
     for row in alarms:
-        said[row.plate].append(
-            f"{_at(row)}: "
-            + (
-                row.trouble
-                or "; ".join(row.numbers)
-                or f"{row.over} px, {row.crowd} in one place, {row.lowpass:.2f}"
-            )
-        )
+        why = f"{row.over} px, {row.crowd} in one place, 9x9 mean {row.lowpass:.2f}"
+        said[row.plate].append(f"{_at(row)}: " + (row.trouble or "; ".join(row.numbers) or why))
     for plate, lines in said.items():
         click.echo("\n".join([plate, *(f"  {line}" for line in lines)]))
     for backend, why in left_out.items():

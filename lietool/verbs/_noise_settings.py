@@ -1,4 +1,4 @@
-"""Harmless ways to draw the same: backends, threads, processors that Mesa is told it has, and that numpy has."""
+"""Harmless ways to draw the same: backends, threads, and what processors Mesa and numpy are told of."""
 
 import os
 from collections.abc import Iterator, Sequence

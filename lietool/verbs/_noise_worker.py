@@ -1,4 +1,4 @@
-"""What a process does for `lietool figures noise`: compute drawings, or render drawings that another computed.
+"""What a process does for `lietool figures noise`: compute drawings, or render those that another computed.
 
 It tells what it found on standard output, a line of JSON for each plate.
 """
@@ -35,8 +35,8 @@ def main(task: str) -> None:
 def start(task: Mapping[str, Any]) -> Sequence[str]:
     """Return the command line of a process that calls `main`, with the modules that this one has."""
     find = f"import sys; sys.path[:] = {sys.path!r}"
-    return (sys.executable, "-c", f"{find}; from lietool.verbs import _noise_worker as w; w.main(sys.argv[1])",
-            json.dumps(task))  # fmt: skip
+    code = f"{find}; from lietool.verbs import _noise_worker as worker; worker.main(sys.argv[1])"
+    return sys.executable, "-c", code, json.dumps(task)
 
 
 def compute(item: _studio.Item, folder: Path) -> dict[str, Any]:
@@ -74,7 +74,7 @@ def render(item: _studio.Item, folder: Path) -> dict[str, Any]:
     Returns
     -------
     dict
-        Each of "plain" and "jitter": "differing", "over", "crowd" and "lowpass" as in `Comparison`, and "passes".
+        Each of "plain" and "jitter": "differing", "over", "crowd", "lowpass" and "passes" of `Comparison`.
     """
     # Our own file of a moment ago, in a folder that nobody else may write to.
     picture = pickle.loads((folder / f"{item.id}.pickle").read_bytes())
