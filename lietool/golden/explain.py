@@ -101,8 +101,7 @@ def lines(expected: np.ndarray, actual: np.ndarray, found: compare.Comparison) -
         The verdict's numbers, then the blobs.
     """
     said = [
-        f"{found.over} px beyond dE {found.delta_e_limit:g} (allowed {found.pixels_limit}), "
-        f"largest {found.largest_delta_e:.1f} at {found.largest_delta_e_at}",
+        f"{found.beyond}, largest {found.largest_delta_e:.1f} at {found.largest_delta_e_at}",
         f"9x9 mean {found.lowpass:+.2f} levels of {found.lowpass_channel} (allowed {found.lowpass_limit:g})"
         f" at {found.lowpass_at}",
     ]

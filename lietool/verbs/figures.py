@@ -184,6 +184,26 @@ def gallery(ids: tuple[str, ...], folder: Path, golden: bool, readme: bool, jobs
     click.echo("\n".join(map(str, changed)) or "nothing has changed")
 
 
+@command.command()
+@_IDS
+@click.option("--quick", is_flag=True, help="Only the settings farthest from each other.")
+@_JOBS
+@_JSON
+@click.pass_context
+def noise(context: click.Context, ids: tuple[str, ...], quick: bool, jobs: int, as_json: bool) -> None:
+    """Draw in every harmless way; none may fail.
+
+    Backends OSMesa and EGL, 0 to 7 threads, processors with and without SSE4.1
+    and AVX, vectors of 128 and 256 bits, numpy and its BLAS as on other
+    processors, and each picture again with a jitter of one grey level.  Prints
+    the largest deviation from the golden against the tolerance.
+    Ends with 5 if anything fails that should not.
+    """
+    from lietool.verbs import _figures_noise
+
+    context.exit(_figures_noise.run(_studio.items(ids), as_json, quick=quick, jobs=jobs))
+
+
 def _state(item: _studio.Item) -> str:
     from lietool.golden import store
 
