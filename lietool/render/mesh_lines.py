@@ -111,10 +111,14 @@ def contour(V: ArrayLike, F: ArrayLike, camera: Camera) -> Array:
     V, F = np.asarray(V, float), np.asarray(F, np.intp)
     found = edges(F)
     N = face_normals(V, F)
-    front = np.sum(N * (camera.eye - V[F].mean(axis=1)), axis=1) > 0.0
+    middle = (V[F[:, 0]] + V[F[:, 1]] + V[F[:, 2]]) / 3.0
+    front = np.sum(N * (camera.eye - middle), axis=1) > 0.0
     border = found.sides[:, 1] < 0
-    bent = np.sum(N[found.sides[:, 0]] * (V[found.opposite[:, 1]] - V[found.ends[:, 0]]), axis=1) < 0.0
-    ends = V[found.ends[border | ((front[found.sides[:, 0]] != front[found.sides[:, 1]]) & bent)]]
+    # Few edges are left for what costs more.
+    turns = np.flatnonzero(border | (front[found.sides[:, 0]] != front[found.sides[:, 1]]))
+    side, tip, start = found.sides[turns, 0], found.opposite[turns, 1], found.ends[turns, 0]
+    bent = np.sum(N[side] * (V[tip] - V[start]), axis=1) < 0.0
+    ends = V[found.ends[turns[border[turns] | bent]]]
     return joined_pairs(ends[:, 0], ends[:, 1])
 
 
