@@ -116,17 +116,19 @@ def contour(V: ArrayLike, F: ArrayLike, camera: Camera) -> Array:
     V, F = np.asarray(V, float), np.asarray(F, np.intp)
     found = edges(F)
     N = face_normals(V, F)
-    front = np.sum(N * (camera.eye - V[F].mean(axis=1)), axis=1) > 0.0
+    middle = (V[F[:, 0]] + V[F[:, 1]] + V[F[:, 2]]) / 3.0
+    front = np.sum(N * (camera.eye - middle), axis=1) > 0.0
     border = found.sides[:, 1] < 0
-    bent = np.sum(N[found.sides[:, 0]] * (V[found.opposite[:, 1]] - V[found.ends[:, 0]]), axis=1) < 0.0
-    kept = np.flatnonzero(border | (front[found.sides[:, 0]] != front[found.sides[:, 1]]))
-    if len(kept):
-        ends = V[found.ends[kept]]
-        seen = np.linalg.norm(np.cross(unit(ends[:, 0] - camera.eye), ends[:, 1] - ends[:, 0]), axis=1)
-        chain = chains(found.ends[kept])
-        long = np.bincount(chain, seen)[chain] > _SHORTEST * np.linalg.norm(np.ptp(V, axis=0))
-        kept = kept[border[kept] | (bent[kept] & long)]
-    ends = V[found.ends[kept]]
+    # Few edges are left for what costs more.
+    turns = np.flatnonzero(border | (front[found.sides[:, 0]] != front[found.sides[:, 1]]))
+    if not len(turns):
+        return np.zeros((0, 3))
+    ends, side = V[found.ends[turns]], found.sides[turns, 0]
+    bent = np.sum(N[side] * (V[found.opposite[turns, 1]] - ends[:, 0]), axis=1) < 0.0
+    seen = np.linalg.norm(np.cross(unit(ends[:, 0] - camera.eye), ends[:, 1] - ends[:, 0]), axis=1)
+    chain = chains(found.ends[turns])
+    long = np.bincount(chain, seen)[chain] > _SHORTEST * np.linalg.norm(np.ptp(V, axis=0))
+    ends = ends[border[turns] | (bent & long)]
     return joined_pairs(ends[:, 0], ends[:, 1])
 
 
