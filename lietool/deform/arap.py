@@ -133,7 +133,8 @@ def _operators(V: Array, F: Index) -> tuple[Array, Any, Any]:
     steep = (frame @ G.data.reshape(m, 3, 3)).ravel()
     slopes = csr_array((steep, np.repeat(F, 2, axis=0).ravel(), np.arange(0, 6 * m + 1, 3)), (2 * m, n))
     around = csr_array((np.repeat(area, 3), (F.ravel(), np.repeat(np.arange(m), 3))), (n, m))
-    return np.asarray(frame.reshape(m, 6), np.float64), slopes, csr_array(kron(around, eye_array(3), format="csr") @ G)
+    sums = csr_array(kron(around, eye_array(3), format="csr") @ G)
+    return np.asarray(frame.reshape(m, 6), np.float64), slopes, sums
 
 
 def polish(prepared: Prepared, vertices: ArrayLike, rounds: int = 10) -> Polished:
