@@ -74,7 +74,7 @@ def _build(
         atomic.write_bytes(path, export.png(painted.image, made, quality.density))
     seconds = time.perf_counter() - start
     judged = quality.comparable and not studio.trouble
-    word = _figures_verify.judge(item, painted).word if judged else "not compared"
+    word = _figures_verify.judge(item, painted, now=made).word if judged else "not compared"
     return {"plate": item.id, "seconds": round(seconds, 3), "verdict": word, "path": str(path)}
 
 

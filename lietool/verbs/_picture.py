@@ -1,6 +1,5 @@
 """From a figure and its parameters to a file: a picture, or frames over the figure's time."""
 
-import json
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -12,7 +11,7 @@ import click
 import lietool
 from lietool import atomic, paths
 from lietool.figure import Drawing, Figure, Time, project
-from lietool.verbs import _film, _mesh, _size
+from lietool.verbs import _film, _mesh, _recorded, _size
 from lietool.verbs._film import sweep as sweep
 
 if TYPE_CHECKING:
@@ -312,7 +311,7 @@ def _about(figure: Figure, values: Mapping[str, Any]) -> dict[str, str]:
         "Title": figure.summary.rstrip("."),
         "Software": f"lietool {lietool.__version__}",
         "command": figure.name,
-        "parameters": json.dumps(values, default=str, ensure_ascii=False),
+        "parameters": _recorded.parameters(figure, values),
     }
     for plate_id, plate in figure.plates.items():
         if figure.plate_params(plate_id) == values:

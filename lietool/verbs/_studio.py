@@ -1,13 +1,13 @@
 """Where the verbs get pictures from: every plate with its place, the renderer, and what is to be recorded."""
 
 import contextlib
-import json
 import os
+import platform
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import cached_property
+from functools import cache, cached_property
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,12 +18,17 @@ import lietool
 from lietool import figure as figure_
 from lietool import paths
 from lietool.figure import Figure, Plate
+from lietool.verbs import _recorded
 from lietool.verbs._size import Size
 
 if TYPE_CHECKING:
     import numpy as np
 
     from lietool.golden.store import Place
+
+
+# What figures compute and pictures are made with.
+_PACKAGES = ("moderngl", "numpy", "scipy", "pillow", "matplotlib", "scikit-image", "trimesh")
 
 
 class Stop(click.ClickException):
@@ -82,11 +87,7 @@ class Item:
     @property
     def recorded(self) -> str:
         """The plate's parameters as a golden records them."""
-        values = {
-            key: value.as_posix() if isinstance(value, Path) else value
-            for key, value in self.parameters.items()
-        }
-        return json.dumps(values, ensure_ascii=False)
+        return _recorded.parameters(self.declared, self.parameters)
 
 
 def items(wanted: Sequence[str] = ()) -> list[Item]:
@@ -219,21 +220,46 @@ def provenance(item: Item, info: Mapping[str, Any]) -> dict[str, str]:
     dict
         Keywords and texts.
     """
-    versions = {name: metadata.version(name) for name in ("moderngl", "numpy", "matplotlib")}
     return {
         "plate": item.id,
         "command": item.command,
         "parameters": item.recorded,
         "date": _date(),
         "commit": _commit(item.declared.file.parent),
+        **made_by(item, info),
+    }
+
+
+def made_by(item: Item, info: Mapping[str, Any]) -> dict[str, str]:
+    """Collect what may make two pictures of a plate differ though its code and parameters are the same.
+
+    Parameters
+    ----------
+    item : Item
+        The plate.
+    info : Mapping[str, object]
+        What renders, as the context tells it.
+
+    Returns
+    -------
+    dict
+        Keywords and texts: the files that it is drawn from, the renderer, and versions.
+    """
+    return {
+        "inputs": _recorded.inputs(item.parameters),
         "renderer": str(info["renderer"]),
         "backend": str(info["backend"]),
         "mesa": str(info.get("mesa") or "unknown"),
         "llvm": str(info.get("llvm") or "unknown"),
-        **versions,
-        # Not from the metadata, which an editable install keeps from the day it was made.
-        "lietool": lietool.__version__,
+        **_versions(),
     }
+
+
+@cache
+def _versions() -> dict[str, str]:
+    found = {name: metadata.version(name) for name in _PACKAGES}
+    # Not from the metadata, which an editable install keeps from the day it was made.
+    return {"python": platform.python_version(), **found, "lietool": lietool.__version__}
 
 
 @contextlib.contextmanager
@@ -242,7 +268,7 @@ def writing(what: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise Stop(2, f"{what} cannot be written: {error}") from None
+        raise Stop(2, f"{what} cannot be written: {error.strerror or error}") from None
 
 
 def _date() -> str:

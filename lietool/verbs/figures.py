@@ -1,6 +1,7 @@
 """List the plates, build them, and verify or accept them against their goldens."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -164,7 +165,7 @@ def accept(ids: tuple[str, ...], reason: str | None, everything: bool) -> None:
     help="Folder for the page.",
 )
 @click.option("--golden", is_flag=True, help="Take the accepted pictures and draw nothing.")
-@click.option("--readme", is_flag=True, help="Renew the README.md beside the goldens instead.")
+@click.option("--readme", is_flag=True, help="Renew README.md and CHANGES.md beside the goldens instead.")
 @_JOBS
 def gallery(ids: tuple[str, ...], folder: Path, golden: bool, readme: bool, jobs: int) -> None:
     """Make a page of the plates, to open in a browser.
@@ -195,12 +196,14 @@ def _state(item: _studio.Item) -> str:
 
 
 def _describe(item: _studio.Item) -> dict[str, Any]:
-    from lietool.golden import store
+    from lietool.golden import history, store
 
     try:
         golden: dict[str, str] = store.provenance(item.place)
     except store.GoldenError as error:
         golden = {"state": f"{error.kind}: {error}"}
+    past = [asdict(change) for change in history.read(golden)]
+    golden.pop(history.KEY, None)
     code = item.figure.function.__code__
     return {
         "plate": item.id,
@@ -211,6 +214,7 @@ def _describe(item: _studio.Item) -> dict[str, Any]:
         "parameters": json.loads(item.recorded),
         "file": f"{item.figure.file}:{code.co_firstlineno}",
         "golden": {"file": str(item.place.png), **golden},
+        "history": past,
     }
 
 
@@ -227,4 +231,9 @@ def _lines(about: dict[str, Any]) -> list[str]:
     for key in ("parameters", "golden"):
         lines.append(f"  {key}")
         lines += [f"    {name:<16}{value}" for name, value in about[key].items()]
+    if about["history"]:
+        lines.append("  accepted")
+    for change in about["history"]:
+        what = f" ({change['what']})" if change["what"] else ""
+        lines.append(f"    {change['date']:<16}  {change['commit']}: {change['reason']}{what}")
     return lines
