@@ -74,6 +74,12 @@ class Quality:
         return [f"--{name}" for name in names if getattr(self, name) != getattr(plain, name)]
 
     @property
+    def other(self) -> dict[str, str]:
+        """What a picture should tell of itself where it was not drawn as goldens are."""
+        said = {"theme": self.theme, "draft": "yes" if self.draft else ""}
+        return {key: value for key, value in said.items() if value not in ("", "book")}
+
+    @property
     def density(self) -> float | None:
         """Dots per inch of a picture of a given length; None where it has none."""
         return self.size.dpi if self.size and self.size.is_length else None
@@ -221,7 +227,7 @@ def _still(figure: Figure, values: dict[str, Any], drawing: Drawing, ending: str
 
     if ending not in VECTORS:
         image = _render(drawing.picture, quality)
-        return export.png(image, provenance(figure, values), quality.density)
+        return export.png(image, provenance(figure, values) | quality.other, quality.density)
     from lietool.render import vector
 
     picture = drawing.picture
