@@ -128,10 +128,11 @@ def test_list_shows_plates_and_the_state_of_their_goldens(run, tmp_path):
 
 def test_show_says_what_a_plate_is_and_where_it_comes_from(run, accepted):
     said = run("show t1B")
-    assert "Five dots" in said and "lietool dots --plate T1b" in said
+    assert "Five dots" in said and "lietool --project . dots --plate T1b" in said
     assert re.search(r"dots\.py:\d+", said) and re.search(r"reason +first look", said)
     about = json.loads(run("show T1 --json"))[0]
-    assert about["parameters"] == {"count": 3, "start": [0.5, 0.25]} and about["command"] == "lietool dots"
+    assert about["parameters"] == {"count": 3, "start": [0.5, 0.25]}
+    assert about["command"] == "lietool --project . dots"
     golden = about["golden"]
     assert golden["date"] == "1970-01-02T00:00:00Z" and golden["renderer"].startswith("llvmpipe")
     assert json.loads(golden["parameters"]) == about["parameters"]
@@ -168,7 +169,8 @@ def test_build_makes_pictures_and_reports_without_judging(run, accepted, studio,
     studio.change = np.invert
     rows = json.loads(run("build T1 -o elsewhere --json"))
     assert [row["verdict"] for row in rows] == ["picture"] and Path(rows[0]["path"]).is_file()
-    assert re.search(r"Not as accepted: T1\. `\S*lietool figures verify T1` says why\.", run("build T1"))
+    why = r"Not as accepted: T1\. `\S*lietool --project \. figures verify T1` says why\."
+    assert re.search(why, run("build T1"))
     assert files(accepted) == before
 
 
@@ -230,7 +232,8 @@ def verdicts(run, code, line="verify --json"):
 
 def test_a_missing_golden(run):
     (message,) = verdicts(run, 3).values()
-    assert "there is no golden at" in message and 'lietool figures accept T1b --reason "..."' in message
+    assert "there is no golden at" in message
+    assert 'lietool --project . figures accept T1b --reason "..."' in message
     assert Path("out/failed/T1-actual.png").exists() and not Path("out/failed/T1-expected.png").exists()
 
 
@@ -270,7 +273,7 @@ def test_a_missing_label(run, accepted):
     (accepted / "labels" / "k1.png").unlink()
     found = verdicts(run, 3)
     assert set(found) == {"label"} and "label '$q$' is not in" in found["label"]
-    assert "lietool figures accept T1b" in found["label"]
+    assert "lietool --project . figures accept T1b" in found["label"]
     assert "labels (1 new)" in run("accept T1 --reason again")
     run("verify")
 

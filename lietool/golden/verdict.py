@@ -106,6 +106,7 @@ def judge(
     missing_labels: Iterable[str] = (),
     limits: Limits | None = None,
     now: Mapping[str, str] | None = None,
+    program: str = "lietool",
 ) -> Verdict:
     """Compare a plate with its golden.
 
@@ -128,6 +129,8 @@ def judge(
         The plate's own, where it has any.
     now : Mapping[str, str], optional
         What the picture is made from and by, in the words of a golden's provenance.
+    program : str
+        How the program is called, with what it needs to know the plate.
 
     Returns
     -------
@@ -135,7 +138,7 @@ def judge(
         With every finding, not only the first.
     """
     limits = limits or Limits()
-    accept = f'lietool figures accept {place.plate} --reason "..."'
+    accept = f'{program} figures accept {place.plate} --reason "..."'
     found = [
         Finding("label", f"label {text!r} is not in {place.labels}. Add it: {accept}")
         for text in missing_labels

@@ -28,7 +28,8 @@ def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> N
     """
     if studio.trouble:
         raise _studio.Stop(4, studio.trouble)
-    everything = [item.place for item in _studio.items()]
+    known = _studio.items(everything=True)
+    everything = [item.place for item in known]
     roots = list(dict.fromkeys(item.place.root for item in items))
     with contextlib.ExitStack() as locks:
         # Labels are shared: from looking for them to the last picture nobody else may write or sweep.
@@ -44,7 +45,7 @@ def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> N
                 click.echo(
                     f"removed {len(removed)} labels that no golden uses: {', '.join(p.stem for p in removed)}"
                 )
-        for path in _figures_gallery.write_readme([i for i in _studio.items() if i.place.root in roots]):
+        for path in _figures_gallery.write_readme([item for item in known if item.place.root in roots]):
             click.echo(f"{path}: renewed")
 
 

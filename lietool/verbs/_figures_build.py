@@ -82,7 +82,7 @@ def _next(items: Sequence[_studio.Item], rows: Sequence[dict[str, Any]]) -> list
     if not items:
         return ["No plates yet."]
     first = items[0]
-    program = _program()
+    program = first.program.replace("lietool", _program(), 1)
     tries = {
         f"{program} {first.command} --help": "what to look for, and what can be changed",
         f"{program} figures show {first.id}": "where a plate and its golden come from",

@@ -120,6 +120,7 @@ def judge(
         missing_labels=painted.missing_labels,
         limits=verdict.Limits(tolerance.pixels, tolerance.delta_e, tolerance.lowpass, tolerance.relative),
         now=now,
+        program=item.program,
     )
 
 

@@ -3,6 +3,7 @@
 import contextlib
 import os
 import platform
+import shlex
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -80,6 +81,15 @@ class Item:
         return Place(paths.GOLDEN if folder == paths.FIGURES else folder.parent / "golden", chapter, self.id)
 
     @property
+    def program(self) -> str:
+        """How to call the program so that it knows this plate."""
+        if self.declared.file.is_relative_to(paths.FIGURES):
+            return "lietool"
+        name = os.environ.get(figure_.PROJECT, "")
+        here = "." if name and os.path.realpath(name) == os.path.realpath(".") else name
+        return shlex.join(["lietool", "--project", here])
+
+    @property
     def parameters(self) -> dict[str, Any]:
         """The plate's parameters."""
         return self.declared.plate_params(self.id)
@@ -90,13 +100,16 @@ class Item:
         return _recorded.parameters(self.declared, self.parameters)
 
 
-def items(wanted: Sequence[str] = ()) -> list[Item]:
+def items(wanted: Sequence[str] = (), *, everything: bool = False) -> list[Item]:
     """List the plates, all or those that are named.
 
     Parameters
     ----------
     wanted : sequence of str
-        Ids in any case; a command stands for all its plates.
+        Ids in any case; a command stands for all its plates.  Without them it is all, where there is a
+        project all of the project: the book's are there to be named.
+    everything : bool
+        The book's and the project's.
 
     Returns
     -------
@@ -112,6 +125,8 @@ def items(wanted: Sequence[str] = ()) -> list[Item]:
     """
     try:
         known = figure_.plates()
+        own = figure_.project()
+        at_hand = known if own is None else figure_.plates((own / "figures",))
     except figure_.FigureError as error:
         raise Stop(2, str(error)) from None
     chosen = set()
@@ -123,7 +138,8 @@ def items(wanted: Sequence[str] = ()) -> list[Item]:
             hint = figure_.nearest(word, [*known, *known.values()])
             raise click.UsageError(f"no plate {word!r}.{hint} See `lietool figures list`.")
         chosen.update(found)
-    return [Item(i, command) for i, command in known.items() if i in chosen or not wanted]
+    listed = chosen if wanted else set(known if everything else at_hand)
+    return [Item(i, command) for i, command in known.items() if i in listed]
 
 
 @dataclass(frozen=True, eq=False)

@@ -90,7 +90,7 @@ def _plate(file: str, plate: str | None, told: Mapping[str, str]) -> _studio.Ite
 
 def _reasons(item: _studio.Item, golden: Mapping[str, str], told: Mapping[str, str]) -> Iterator[Reason]:
     """What the picture says of itself, by which it is another one or cannot be compared."""
-    again = f"lietool {item.command} --plate {item.id}"
+    again = f"{item.program} {item.command} --plate {item.id}"
     command = told.get("command", item.command)
     if command != item.command:
         yield Reason("other command", 5, f"it was made by `lietool {command}`, the golden by `{again}`")
@@ -144,5 +144,5 @@ def _sizes(item: _studio.Item, found: _compared.Pair) -> str:
     # To a pixel, as whoever scales a picture rounds.
     wide, high = abs(w * height / h - width), abs(h * width / w - height)
     if wide < max(width / w, 1.0) or high < max(height / h, 1.0):
-        return f"{said}, of the same shape. {wanted}: lietool {item.command} --plate {item.id}"
+        return f"{said}, of the same shape. {wanted}: {item.program} {item.command} --plate {item.id}"
     return f"{said}, of another shape. {wanted}, and the page of that shape"

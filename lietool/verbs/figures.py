@@ -36,7 +36,8 @@ def command() -> None:
     """List the plates, build them, and verify or accept them against their goldens.
 
     IDS are plates such as B2.8, in any case; a command such as slerp stands for
-    all its plates.  Without IDS it is all plates.
+    all its plates.  Without IDS it is all plates; with --project it
+    is all of the project, and those of the book can be named.
     """
 
 
@@ -126,6 +127,9 @@ def verify(context: click.Context, ids: tuple[str, ...], folder: Path, jobs: int
     from lietool.verbs import _figures_verify
 
     items = _studio.items(ids)
+    if not items:
+        # A check that looks at nothing passes for ever.
+        raise _studio.Stop(2, "there is no plate to verify. Write a figure first: README.md has an example")
     context.exit(
         _figures_verify.run(
             items, _studio.current(), folder / "failed", as_json, everything=not ids, jobs=jobs
@@ -220,7 +224,7 @@ def _describe(item: _studio.Item) -> dict[str, Any]:
 
 def _making(item: _studio.Item) -> str:
     first = item.id == next(iter(item.declared.plates))
-    return f"lietool {item.command}" + ("" if first else f" --plate {item.id}")
+    return f"{item.program} {item.command}" + ("" if first else f" --plate {item.id}")
 
 
 def _lines(about: dict[str, Any]) -> list[str]:
