@@ -26,9 +26,8 @@ def write_bytes(path: Path, data: bytes) -> None:
         If the folder cannot be made or written, or `path` is a device, a pipe or a
         loop of links; nothing is left behind.
     """
-    path = _ordinary(path)
+    path, mode = target(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    mode = _mode(path)
     # In the same folder, since a rename is atomic only within one file system.
     handle, name = tempfile.mkstemp(prefix=f".{path.name[:_STEM]}.", suffix=".part", dir=path.parent)
     try:
@@ -41,6 +40,28 @@ def write_bytes(path: Path, data: bytes) -> None:
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
+
+
+def target(path: Path) -> tuple[Path, int]:
+    """Return the file that writing to `path` replaces, and the mode that it will have.
+
+    Parameters
+    ----------
+    path : Path
+        As for `write_bytes`.
+
+    Returns
+    -------
+    tuple of Path and int
+        The file behind all links, and its permission bits.
+
+    Raises
+    ------
+    OSError
+        If it is read-only, a device, a pipe, a folder or a loop of links.
+    """
+    path = _ordinary(path)
+    return path, _mode(path)
 
 
 def _ordinary(path: Path) -> Path:

@@ -32,6 +32,8 @@ from lietool.plate import Tolerance as Tolerance
 
 # Also set by `lietool --project`: spawned workers inherit it.
 PROJECT = "LIETOOL_PROJECT"
+# What its folder of figures is imported as.
+_OWN = "lietool_project"
 
 
 def project() -> Path | None:
@@ -251,8 +253,11 @@ def _module(file: Path) -> ModuleType:
         return importlib.import_module(
             ".".join(("lietool.figures", *file.relative_to(paths.FIGURES).with_suffix("").parts))
         )
-    # A project is no package: two projects may each have a chapter and a file of the same name.
-    name = f"lietool_project.{file.parent.name}.{file.stem}"
+    root = file.parent if file.parent.name == "figures" else file.parent.parent
+    package = _package(_OWN, root)
+    if file.parent != root:
+        package = _package(f"{_OWN}.{file.parent.name.replace('.', '_')}", file.parent)
+    name = f"{package}.{file.stem}"
     if getattr(sys.modules.get(name), "__file__", None) == str(file):
         return sys.modules[name]
     spec = importlib.util.spec_from_file_location(name, file)
@@ -265,3 +270,17 @@ def _module(file: Path) -> ModuleType:
         del sys.modules[name]
         raise
     return module
+
+
+def _package(name: str, folder: Path) -> str:
+    """Make a folder a package, so that figures in it can import parts beside them.
+
+    Two projects may each have a chapter and a file of the same name: what was imported from another folder
+    is forgotten.
+    """
+    if getattr(sys.modules.get(name), "__path__", None) != [str(folder)]:
+        for known in [known for known in sys.modules if known == name or known.startswith(f"{name}.")]:
+            del sys.modules[known]
+        sys.modules[name] = ModuleType(name)
+        sys.modules[name].__path__ = [str(folder)]
+    return name

@@ -448,6 +448,12 @@ class TestReadmeOfOurGoldens:
         current = self.path.read_bytes() if self.path.is_file() else b""
         assert current == wanted, "golden/README.md is stale: `lietool figures gallery --readme` renews it"
 
+    def test_the_history_is_as_it_would_be_written_now(self):
+        path = paths.GOLDEN / _figures_gallery.CHANGES
+        wanted = _figures_gallery.readmes(_studio.items())[path]
+        current = path.read_bytes() if path.is_file() else b""
+        assert current == wanted, "golden/CHANGES.md is stale: `lietool figures gallery --readme` renews it"
+
     def test_its_pictures_and_anchors_are_there(self):
         text = self.path.read_text()
         pictures = re.findall(r"^!\[(.+)\]\((.+?)\)$", text, re.MULTILINE)

@@ -14,7 +14,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from lietool import figure, paths
-from lietool.golden import store
+from lietool.golden import history, store
 from lietool.verbs import _studio
 from lietool.verbs.figures import command
 
@@ -128,10 +128,11 @@ def test_list_shows_plates_and_the_state_of_their_goldens(run, tmp_path):
 
 def test_show_says_what_a_plate_is_and_where_it_comes_from(run, accepted):
     said = run("show t1B")
-    assert "Five dots" in said and "lietool dots --plate T1b" in said
+    assert "Five dots" in said and "lietool --project . dots --plate T1b" in said
     assert re.search(r"dots\.py:\d+", said) and re.search(r"reason +first look", said)
     about = json.loads(run("show T1 --json"))[0]
-    assert about["parameters"] == {"count": 3, "start": [0.5, 0.25]} and about["command"] == "lietool dots"
+    assert about["parameters"] == {"count": 3, "start": [0.5, 0.25]}
+    assert about["command"] == "lietool --project . dots"
     golden = about["golden"]
     assert golden["date"] == "1970-01-02T00:00:00Z" and golden["renderer"].startswith("llvmpipe")
     assert json.loads(golden["parameters"]) == about["parameters"]
@@ -168,7 +169,8 @@ def test_build_makes_pictures_and_reports_without_judging(run, accepted, studio,
     studio.change = np.invert
     rows = json.loads(run("build T1 -o elsewhere --json"))
     assert [row["verdict"] for row in rows] == ["picture"] and Path(rows[0]["path"]).is_file()
-    assert re.search(r"Not as accepted: T1\. `\S*lietool figures verify T1` says why\.", run("build T1"))
+    why = r"Not as accepted: T1\. `\S*lietool --project \. figures verify T1` says why\."
+    assert re.search(why, run("build T1"))
     assert files(accepted) == before
 
 
@@ -230,7 +232,8 @@ def verdicts(run, code, line="verify --json"):
 
 def test_a_missing_golden(run):
     (message,) = verdicts(run, 3).values()
-    assert "there is no golden at" in message and 'lietool figures accept T1b --reason "..."' in message
+    assert "there is no golden at" in message
+    assert 'lietool --project . figures accept T1b --reason "..."' in message
     assert Path("out/failed/T1-actual.png").exists() and not Path("out/failed/T1-expected.png").exists()
 
 
@@ -270,7 +273,7 @@ def test_a_missing_label(run, accepted):
     (accepted / "labels" / "k1.png").unlink()
     found = verdicts(run, 3)
     assert set(found) == {"label"} and "label '$q$' is not in" in found["label"]
-    assert "lietool figures accept T1b" in found["label"]
+    assert "lietool --project . figures accept T1b" in found["label"]
     assert "labels (1 new)" in run("accept T1 --reason again")
     run("verify")
 
@@ -287,6 +290,117 @@ def test_a_golden_of_another_renderer(run, accepted):
     assert set(found) == {"golden's renderer"} and "'softpipe', not by llvmpipe" in found["golden's renderer"]
     assert "was made by 'softpipe'" in run("accept T1 --reason again")
     run("verify")
+
+
+def test_other_parameters_are_said_instead_of_a_picture_that_differs(run, accepted, studio):
+    texts(accepted / "ch9" / "T1.png", parameters='{"count": 4, "start": [0.5, 0.25]}')
+    studio.change, studio.numbers = np.invert, {"x": np.zeros(3)}
+    found = verdicts(run, 5, "verify T1 --json")
+    assert set(found) == {"parameters"}
+    said = run("verify T1", 5)
+    assert "count was 4, is 3" in said and "SSIM" not in said and "out/failed/T1-difference.png" in said
+    texts(accepted / "ch9" / "T1b.png", renderer="softpipe")
+    assert set(verdicts(run, 5, "verify T1b --json")) == {"golden's renderer"}
+
+
+def test_what_else_a_picture_was_made_by_is_said_where_it_differs(run, accepted, studio):
+    studio.info = {**studio.info, "mesa": "25.0.7", "llvm": "19"}
+    assert "2 as accepted" in run("verify")
+    studio.change = np.invert
+    found = verdicts(run, 5)
+    assert set(found) == {"picture"}
+    assert found["picture"].endswith("Made otherwise: mesa was 22.3.6, is 25.0.7, llvm was 15, is 19")
+
+
+def test_pixels_that_another_program_has_changed_are_no_golden(run, accepted):
+    path = accepted / "ch9" / "T1.png"
+    with Image.open(path) as image:
+        info = PngInfo()
+        for key, value in image.text.items():  # type: ignore[attr-defined]
+            info.add_text(key, value)
+        Image.fromarray(np.array(image) ^ np.uint8(1)).save(path, pnginfo=info)
+    found = verdicts(run, 3)
+    assert set(found) == {"torn"} and "it has other pixels than were accepted" in found["torn"]
+
+
+FROM_FILES = '''
+"""Toy."""
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+
+from lietool.figure import Drawing, Param, Plate, figure
+from lietool.render.scene import Picture, View
+
+HERE = Path(__file__).parent
+
+
+@figure(
+    plates={
+        "F0": Plate("From none", (), "From none."),
+        "F1": Plate("From files", (), "Two.", {"first": HERE / "a.txt", "more": [HERE / "b.txt"]}),
+    }
+)
+def read(
+    first: Annotated[Path | None, Param("a file")] = None,
+    more: Annotated[tuple[Path, ...], Param("more of them", positional=True)] = (),
+) -> Drawing:
+    """Read files."""
+    texts = [path.read_text() for path in (*([first] if first else []), *more)]
+    return Drawing(Picture((View(()),), (60, 40)), {"length": np.array(list(map(len, texts)))})
+'''
+
+
+def test_files_that_a_plate_is_drawn_from_are_recorded(run, tmp_path):
+    folder = tmp_path / "figures" / "ch9"
+    (folder / "read.py").write_text(FROM_FILES)
+    for name in "ab":
+        (folder / f"{name}.txt").write_text(name)
+    run("accept F1 --reason r")
+    golden = store.provenance(store.Place(tmp_path / "golden", "ch9", "F1"))
+    # As in any other folder, on any other machine.
+    wanted = {"first": "figures/ch9/a.txt", "more": ["figures/ch9/b.txt"]}
+    assert json.loads(golden["parameters"]) == wanted
+    assert set(json.loads(golden["inputs"])) == {"first", "more[0]"}
+    run("verify F1")
+    # Nothing that is compared has changed, but not by any merit of the golden.
+    (folder / "b.txt").write_text("x")
+    found = verdicts(run, 5, "verify F1 --json")
+    assert set(found) == {"inputs"} and "made from other files: more[0] was " in found["inputs"]
+    assert "F1: files: more[0] was" in run("accept F1 --reason again")
+    run("verify F1")
+
+
+def test_accept_keeps_the_history_of_a_golden(run, accepted, studio):
+    place = store.Place(accepted, "ch9", "T1")
+    assert [change.what for change in history.read(store.provenance(place))] == ["new"]
+    studio.numbers = {"count": 8}
+    run('accept T1 --reason "a `second`  look_"')
+    place.json.write_text("{}")
+    run('accept T1 --reason "third"')
+    past = history.read(store.provenance(place))
+    assert [change.reason for change in past] == ["first look", "a `second` look_", "third"]
+    assert past[1].what.startswith("numbers: count") and past[2].what == "whole again, was half accepted"
+    text = (accepted / "CHANGES.md").read_text()
+    lines = [line for line in text.splitlines() if line.startswith(("### ", "- "))]
+    assert lines[0] == "### [T1](ch9/T1.png)" and lines[4:] == [
+        "### [T1b](ch9/T1b.png)",
+        "- 1970-01-02, `unknown`: first look (new)",
+    ]
+    assert [line.split(": ", 1)[1][:20] for line in lines[1:4]] == [
+        "third (whole again, ",
+        r"a \`second\` look\_ ",
+        "first look (new)",
+    ]
+    said = run("show T1")
+    assert "1970-01-02T00:00:00Z  unknown: third (whole again, was half accepted)" in said
+    assert json.loads(run("show T1 --json"))[0]["history"][0]["reason"] == "first look"
+    # It is made of the pictures alone.
+    (accepted / "CHANGES.md").unlink()
+    assert run("gallery --readme").strip().endswith("CHANGES.md")
+    assert (accepted / "CHANGES.md").read_text() == text
 
 
 def test_another_picture_is_explained_and_left_until_it_passes_again(run, accepted, studio):

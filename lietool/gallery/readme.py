@@ -36,18 +36,19 @@ def build(entries: Sequence[Entry]) -> str:
     parts = [_HEAD]
     parts += [_contents(chapter, members) for chapter, members in chapters.items()]
     for chapter, members in chapters.items():
-        parts.append(f"\n## {_heading(chapter)}\n")
+        parts.append(f"\n## {heading(chapter)}\n")
         parts += map(_plate, members)
     return "\n".join(parts)
 
 
-def _heading(chapter: Chapter) -> str:
+def heading(chapter: Chapter) -> str:
+    """Return what stands above the plates of a chapter."""
     return f"{chapter.label}: {chapter.name}" if chapter.name else chapter.label
 
 
 def _contents(chapter: Chapter, members: Sequence[Entry]) -> str:
     links = " · ".join(f"[{entry.id}](#{_anchor(entry.id)})" for entry in members)
-    return f"- {_heading(chapter)}: {links}"
+    return f"- {heading(chapter)}: {links}"
 
 
 def _anchor(plate_id: str) -> str:
@@ -61,7 +62,7 @@ def _plate(entry: Entry) -> str:
         "",
         f"### {entry.id}: {_prose(entry.title)}",
         "",
-        f"![{_escaped(entry.alternative)}]({entry.golden})",
+        f"![{escaped(entry.alternative)}]({entry.golden})",
         "",
         _prose(entry.caption),
         "",
@@ -82,8 +83,9 @@ def _formula(plain: str) -> str:
 def _prose(text: str) -> str:
     """A caption with its formulas set, in which nothing is taken for Markdown."""
     parts = re.split(r"(</?(?:i|sub|sup)>)", prose.to_html(text))
-    return "".join(part if i % 2 else _escaped(html.unescape(part)) for i, part in enumerate(parts))
+    return "".join(part if i % 2 else escaped(html.unescape(part)) for i, part in enumerate(parts))
 
 
-def _escaped(text: str) -> str:
+def escaped(text: str) -> str:
+    """Return a text in which nothing is taken for Markdown."""
     return re.sub(r"([\\`*_\[\]<>|#])", r"\\\1", text)

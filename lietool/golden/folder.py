@@ -61,7 +61,7 @@ def unregistered(root: Path, places: Collection[store.Place]) -> list[Path]:
 
 
 def sweep(root: Path, places: Collection[store.Place]) -> list[Path]:
-    """Remove the labels that no golden refers to, and what a killed writer left behind.
+    """Remove the labels that no golden refers to; finish or remove what a killed writer left behind.
 
     The caller holds `lock`.  Nothing is removed unless all goldens are whole: one that is
     not may refer to any label.
@@ -80,6 +80,8 @@ def sweep(root: Path, places: Collection[store.Place]) -> list[Path]:
     """
     for left in root.rglob(".*.part"):
         left.unlink(missing_ok=True)
+    for place in places:
+        store.settle(place)
     try:
         used = {key for place in places for key in store.label_keys(store.provenance(place))}
     except store.GoldenError:

@@ -1,62 +1,38 @@
 """Goldens on disk: a picture and its numbers per plate, and the labels that the pictures share.
 
-Written in the order labels, numbers, picture, each file at once, and the
-picture carries the SHA-256 of the numbers.  So a kill at any moment leaves the
-old golden, the new one, or a pair that does not belong together and says so.
+The picture carries the SHA-256 of its pixels and of the numbers.  Written in
+the order labels, numbers under another name, picture, and then the numbers get
+their own name: the picture's rename is the one moment at which the golden
+changes.  A kill before it leaves the old golden; one after it leaves the new,
+whose numbers are found under either name.
 """
 
 import contextlib
-import hashlib
 import io
 import json
-import zlib
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
-from PIL.PngImagePlugin import PngImageFile, PngInfo
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from lietool import atomic
 from lietool.golden import numbers as numbers_
+from lietool.golden import picture as picture_
+from lietool.golden import place as place_
+from lietool.golden.place import GoldenError as GoldenError
+from lietool.golden.place import Place as Place
+from lietool.golden.place import remembered as remembered
+from lietool.golden.place import settle as settle
 
-LABELS = "labels"
-_TooLarge = Image.DecompressionBombError
-_SHA = "numbers-sha256"
+LABELS = place_.LABELS
+_PIXELS = "pixels-sha256"
 _KEYS = "label-keys"
-
-
-class GoldenError(Exception):
-    """A golden that cannot be compared with; `kind` is "missing", "torn" or "half accepted"."""
-
-    def __init__(self, kind: str, message: str) -> None:
-        super().__init__(message)
-        self.kind = kind
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where the golden of one plate lies: `root`/`chapter`/`plate`.png and .json."""
-
-    root: Path
-    chapter: str
-    plate: str
-
-    @property
-    def png(self) -> Path:
-        """The picture."""
-        return self.root / self.chapter / f"{self.plate}.png"
-
-    @property
-    def json(self) -> Path:
-        """The numbers."""
-        return self.root / self.chapter / f"{self.plate}.json"
-
-    @property
-    def labels(self) -> Path:
-        """The folder of the labels, shared by all plates."""
-        return self.root / LABELS
+# Depth and kind of colour in the header of a PNG: 8 bits of red, green and blue.
+_HEADER = slice(24, 26)
+_PLAIN = b"\x08\x02"
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,9 +62,7 @@ def read(place: Place) -> Golden:
     GoldenError
         If it is missing, torn or half accepted.
     """
-    data, text = _bytes(place)
-    image, found = _decode(place.png, data)
-    _belong_together(place, text, found)
+    image, found, text = place_.whole(place, _decode)
     return Golden(image, _numbers(place.json, text), found)
 
 
@@ -110,10 +84,7 @@ def provenance(place: Place) -> dict[str, str]:
     GoldenError
         As `read`, but for damage among the pixels.
     """
-    data, text = _bytes(place)
-    with _undamaged(place.png), Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
-        found = _texts(picture)
-    _belong_together(place, text, found)
+    _, found, _ = place_.whole(place, _texts)
     return found
 
 
@@ -150,7 +121,7 @@ def write(
     label_keys: Collection[str],
     provenance: Mapping[str, str],
 ) -> None:
-    """Write a golden: labels, then numbers, then the picture that carries the numbers' SHA-256.
+    """Write a golden: labels, numbers and the picture, which carries the SHA-256 of the numbers.
 
     The caller holds `folder.lock`.
 
@@ -186,60 +157,37 @@ def write(
     for key, value in provenance.items():
         info.add_text(key, value)
     info.add_text(_KEYS, json.dumps(sorted(label_keys)))
-    info.add_text(_SHA, _digest(text))
+    info.add_text(_PIXELS, _pixels(image))
+    info.add_text(place_.SHA, place_.digest(text))
     file = io.BytesIO()
     Image.fromarray(image).save(file, "PNG", pnginfo=info, optimize=True)
     for name, data in labels.items():
         atomic.write_bytes(place.labels / name, data)
-    atomic.write_bytes(place.json, text)
-    atomic.write_bytes(place.png, file.getvalue())
-
-
-def _bytes(place: Place) -> tuple[bytes, bytes]:
-    found = {}
-    for path in (place.png, place.json):
-        try:
-            found[path] = path.read_bytes()
-        except (FileNotFoundError, NotADirectoryError):
-            continue
-        except OSError as error:
-            raise GoldenError("torn", f"{path} cannot be read ({error.strerror})") from error
-    if not found:
-        raise GoldenError("missing", f"there is no golden at {place.png}")
-    for path in (place.png, place.json):
-        if path not in found:
-            raise GoldenError("half accepted", f"{path} is missing beside its other half")
-    # A checkout may have turned the ends of lines.
-    return found[place.png], found[place.json].replace(b"\r\n", b"\n")
-
-
-@contextlib.contextmanager
-def _undamaged(path: Path) -> Iterator[None]:
+    final, mode = atomic.target(place.json)
+    pending = place_.pending(place)
     try:
-        yield
-    except UnidentifiedImageError as error:
-        # Pillow names the bytes in memory, which tells nobody anything.
-        raise GoldenError("torn", f"{path} cannot be decoded (it is no PNG)") from error
-    # All that Pillow raises for a file that is cut or changed.
-    except (OSError, SyntaxError, ValueError, EOFError, IndexError, zlib.error, _TooLarge) as error:
-        raise GoldenError("torn", f"{path} cannot be decoded ({error})") from error
+        atomic.write_bytes(pending, text)
+        pending.chmod(mode)
+        atomic.write_bytes(place.png, file.getvalue())
+    except OSError:
+        # Only of these is it sure that the picture is still the old one.
+        with contextlib.suppress(OSError):
+            pending.unlink(missing_ok=True)
+        raise
+    pending.replace(final)
 
 
-def _decode(path: Path, data: bytes) -> tuple[np.ndarray, dict[str, str]]:
-    with _undamaged(path):
-        with Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
-            picture.verify()
-        with Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
-            image = np.array(picture)
-            if picture.mode != "RGB":
-                raise ValueError(f"mode {picture.mode} instead of RGB")
-            return image, _texts(picture)
+def _decode(data: bytes) -> tuple[np.ndarray, dict[str, str]]:
+    decoded = picture_.decode(data, ".png")
+    if data[_HEADER] != _PLAIN:
+        raise picture_.PictureError("is not of 8 bits of red, green and blue", "Save it so")
+    if decoded.texts.get(_PIXELS, said := _pixels(decoded.image)) != said:
+        raise picture_.PictureError("has other pixels than were accepted", "Restore them")
+    return decoded.image, dict(decoded.texts)
 
 
-def _texts(picture: Image.Image) -> dict[str, str]:
-    if not isinstance(picture, PngImageFile):
-        return {}
-    return {key: str(value) for key, value in picture.text.items()}
+def _texts(data: bytes) -> tuple[None, dict[str, str]]:
+    return None, picture_.told(data)
 
 
 def _numbers(path: Path, text: bytes) -> dict[str, object]:
@@ -249,10 +197,7 @@ def _numbers(path: Path, text: bytes) -> dict[str, object]:
         raise GoldenError("torn", f"{path} cannot be read ({error})") from error
 
 
-def _belong_together(place: Place, text: bytes, found: Mapping[str, str]) -> None:
-    if found.get(_SHA) != _digest(text):
-        raise GoldenError("half accepted", f"{place.png} does not belong to {place.json.name}")
-
-
-def _digest(text: bytes) -> str:
-    return hashlib.sha256(text).hexdigest()
+def _pixels(image: np.ndarray) -> str:
+    """The digest of a picture itself, whatever its file is packed like."""
+    height, width = image.shape[:2]
+    return place_.digest(b"%dx%d " % (width, height) + image.tobytes())

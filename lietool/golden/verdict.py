@@ -1,8 +1,8 @@
 """One plate against its golden: everything that can be wrong, each with its own message and exit code."""
 
 import json
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,12 +19,18 @@ CODES = {
     "half accepted": 3,
     "label": 3,
     "parameters": 5,
+    "inputs": 5,
     "golden's renderer": 5,
     "picture": 5,
     "numbers": 5,
     "undrawn": 5,
 }
 CANONICAL = "llvmpipe"
+# Of these the golden says that it was made otherwise: then a picture that differs is no news.
+_EXPLAINED = ("parameters", "inputs", "golden's renderer")
+# What may make a difference although code and parameters are the same, as a golden records it.
+MADE_BY = ("renderer", "backend", "mesa", "llvm", "python", "numpy", "scipy", "matplotlib", "pillow")
+MADE_BY += ("scikit-image", "trimesh", "moderngl", "lietool")
 
 
 @dataclass(frozen=True)
@@ -99,8 +105,13 @@ def judge(
     image: np.ndarray | None,
     missing_labels: Iterable[str] = (),
     limits: Limits | None = None,
+    now: Mapping[str, str] | None = None,
+    program: str = "lietool",
 ) -> Verdict:
     """Compare a plate with its golden.
+
+    A golden that says of itself that it was made from other parameters or files, or by a renderer that
+    goldens are not made with, is found to be so, and not to be another picture.
 
     Parameters
     ----------
@@ -116,6 +127,10 @@ def judge(
         Texts that the golden's labels do not hold.
     limits : Limits, optional
         The plate's own, where it has any.
+    now : Mapping[str, str], optional
+        What the picture is made from and by, in the words of a golden's provenance.
+    program : str
+        How the program is called, with what it needs to know the plate.
 
     Returns
     -------
@@ -123,7 +138,7 @@ def judge(
         With every finding, not only the first.
     """
     limits = limits or Limits()
-    accept = f'lietool figures accept {place.plate} --reason "..."'
+    accept = f'{program} figures accept {place.plate} --reason "..."'
     found = [
         Finding("label", f"label {text!r} is not in {place.labels}. Add it: {accept}")
         for text in missing_labels
@@ -134,19 +149,37 @@ def judge(
         # With no golden at all, its labels are not worth a word.
         found = [] if error.kind == "missing" else found
         return Verdict((*found, Finding(error.kind, _unreadable(error, accept))))
-    found += _provenance(golden.provenance, parameters, accept)
+    found += _provenance(golden.provenance, parameters, now or {}, accept)
+    compared: list[Finding] = []
     comparison = None
     if image is not None:
         comparison = compare.images(
             golden.image, image, pixels=limits.pixels, delta_e=limits.delta_e, lowpass=limits.lowpass
         )
-        found += _picture(comparison, accept)
+        compared += _picture(comparison, accept)
     differences = compare_numbers.numbers(golden.numbers, shown, limits.relative)
     if differences:
-        more = f"; and {len(differences) - 3} entries more" if len(differences) > 3 else ""
-        listed = "; ".join(map(str, differences[:3])) + more
-        found.append(Finding("numbers", f"numbers differ: {listed}"))
+        compared.append(_numbers(differences))
+    if not any(finding.kind in _EXPLAINED for finding in found):
+        found += _elsewhere(compared, golden.provenance, now or {})
     return Verdict(tuple(found), comparison, tuple(differences), golden)
+
+
+def differences_of(before: Mapping[str, str], now: Mapping[str, str]) -> str:
+    """Say by what else a picture was made than another.
+
+    Parameters
+    ----------
+    before, now : Mapping[str, str]
+        Provenances; what one of them does not say is passed over.
+
+    Returns
+    -------
+    str
+        Such as "mesa was 22.3.6, is 25.0.7"; empty where they are the same.
+    """
+    names = [name for name in MADE_BY if name in before and name in now and before[name] != now[name]]
+    return ", ".join(f"{name} was {before[name]}, is {now[name]}" for name in names)
 
 
 def changed(before: str, after: str) -> str:
@@ -180,10 +213,19 @@ def _unreadable(error: store.GoldenError, accept: str) -> str:
     return f"{error}. Restore it from version control, or make it again: {accept}"
 
 
-def _provenance(recorded: Mapping[str, str], parameters: str, accept: str) -> Iterable[Finding]:
+def _provenance(
+    recorded: Mapping[str, str], parameters: str, now: Mapping[str, str], accept: str
+) -> Iterable[Finding]:
     if change := changed(recorded.get("parameters", ""), parameters):
         yield Finding(
             "parameters", f"the golden was made with other parameters: {change}. If meant: {accept}"
+        )
+    # A golden that is older than this text does not say what it was made from.
+    inputs = recorded.get("inputs"), now.get("inputs")
+    if None not in inputs and inputs[0] != inputs[1]:
+        change = changed(str(inputs[0]), str(inputs[1]))
+        yield Finding(
+            "inputs", f"the golden was made from other files: {change} (SHA-256). If meant: {accept}"
         )
     renderer = recorded.get("renderer", "unknown")
     if not renderer.startswith(CANONICAL):
@@ -206,3 +248,17 @@ def _picture(comparison: compare.Comparison, accept: str) -> Iterable[Finding]:
             f" {comparison.lowpass_channel} ({comparison.lowpass_limit:g} allowed)"
             f" at {comparison.lowpass_at}",
         )
+
+
+def _numbers(differences: Sequence[compare_numbers.Difference]) -> Finding:
+    more = f"; and {len(differences) - 3} entries more" if len(differences) > 3 else ""
+    return Finding("numbers", f"numbers differ: {'; '.join(map(str, differences[:3]))}{more}")
+
+
+def _elsewhere(
+    compared: Sequence[Finding], recorded: Mapping[str, str], now: Mapping[str, str]
+) -> Iterable[Finding]:
+    """Say of what differs, where that is so, that something else made it."""
+    other = differences_of(recorded, now)
+    for finding in compared:
+        yield replace(finding, message=f"{finding.message}. Made otherwise: {other}") if other else finding

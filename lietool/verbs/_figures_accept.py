@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import click
 
-from lietool.golden import compare, compare_numbers, folder, numbers, store, verdict
-from lietool.verbs import _figures_gallery, _studio, _table
+from lietool.golden import compare, compare_numbers, folder, history, numbers, store, verdict
+from lietool.verbs import _figures_gallery, _recorded, _studio, _table
 
 
 def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> None:
@@ -28,7 +28,8 @@ def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> N
     """
     if studio.trouble:
         raise _studio.Stop(4, studio.trouble)
-    everything = [item.place for item in _studio.items()]
+    known = _studio.items(everything=True)
+    everything = [item.place for item in known]
     roots = list(dict.fromkeys(item.place.root for item in items))
     with contextlib.ExitStack() as locks:
         # Labels are shared: from looking for them to the last picture nobody else may write or sweep.
@@ -44,7 +45,7 @@ def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> N
                 click.echo(
                     f"removed {len(removed)} labels that no golden uses: {', '.join(p.stem for p in removed)}"
                 )
-        for path in _figures_gallery.write_readme([i for i in _studio.items() if i.place.root in roots]):
+        for path in _figures_gallery.write_readme([item for item in known if item.place.root in roots]):
             click.echo(f"{path}: renewed")
 
 
@@ -53,6 +54,8 @@ def _accept(item: _studio.Item, studio: _studio.Studio, reason: str) -> str:
     try:
         change = _change(item, painted)
         if change:
+            made = _studio.provenance(item, studio.info) | {"reason": reason}
+            past = history.extended(store.remembered(item.place), made, change)
             with _studio.writing(str(item.place.png)):
                 store.write(
                     item.place,
@@ -60,7 +63,7 @@ def _accept(item: _studio.Item, studio: _studio.Studio, reason: str) -> str:
                     painted.numbers,
                     labels=painted.fresh,
                     label_keys=painted.label_keys,
-                    provenance=_studio.provenance(item, studio.info) | {"reason": reason},
+                    provenance=made | {history.KEY: past},
                 )
     except ValueError as error:
         raise _studio.Stop(2, str(error)) from None
@@ -73,6 +76,7 @@ def _change(item: _studio.Item, painted: _studio.Painted) -> str:
         old = store.read(item.place)
     except store.GoldenError as error:
         return "new" if error.kind == "missing" else f"whole again, was {error.kind}"
+    before = old.provenance
     said = []
     compared = compare.images(old.image, painted.image)
     if not compared.same_size:
@@ -85,11 +89,14 @@ def _change(item: _studio.Item, painted: _studio.Painted) -> str:
     if numbers.dumps(old.numbers) != numbers.dumps(painted.numbers):
         differences = compare_numbers.numbers(old.numbers, painted.numbers, 0.0)
         said.append("numbers: " + ("; ".join(map(str, differences)) or "in another order or type"))
-    if change := verdict.changed(old.provenance.get("parameters", ""), item.recorded):
+    if change := verdict.changed(before.get("parameters", ""), item.recorded):
         said.append(f"parameters: {change}")
-    if not old.provenance.get("renderer", "").startswith(verdict.CANONICAL):
-        said.append(f"was made by {old.provenance.get('renderer', 'unknown')!r}")
-    if painted.fresh or store.label_keys(old.provenance) != painted.label_keys:
+    inputs = _recorded.inputs(item.parameters)
+    if change := verdict.changed(before.get("inputs", inputs), inputs):
+        said.append(f"files: {change}")
+    if not before.get("renderer", "").startswith(verdict.CANONICAL):
+        said.append(f"was made by {before.get('renderer', 'unknown')!r}")
+    if painted.fresh or store.label_keys(before) != painted.label_keys:
         said.append(f"labels ({len(painted.fresh)} new)")
     return "; ".join(said)
 

@@ -74,7 +74,7 @@ def _build(
         atomic.write_bytes(path, export.png(painted.image, made, quality.density))
     seconds = time.perf_counter() - start
     judged = quality.comparable and not studio.trouble
-    word = _figures_verify.judge(item, painted).word if judged else "not compared"
+    word = _figures_verify.judge(item, painted, now=made).word if judged else "not compared"
     return {"plate": item.id, "seconds": round(seconds, 3), "verdict": word, "path": str(path)}
 
 
@@ -82,7 +82,7 @@ def _next(items: Sequence[_studio.Item], rows: Sequence[dict[str, Any]]) -> list
     if not items:
         return ["No plates yet."]
     first = items[0]
-    program = _program()
+    program = first.program.replace("lietool", _program(), 1)
     tries = {
         f"{program} {first.command} --help": "what to look for, and what can be changed",
         f"{program} figures show {first.id}": "where a plate and its golden come from",

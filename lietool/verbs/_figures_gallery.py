@@ -11,13 +11,13 @@ import click
 import numpy as np
 
 from lietool import atomic, paths
-from lietool.gallery import chapters, entry, readme, site
+from lietool.gallery import changes, chapters, entry, readme, site
 from lietool.golden import folder as golden_folder
+from lietool.golden import history, store
 from lietool.golden import numbers as numbers_
-from lietool.golden import store
 from lietool.verbs import _equations_index, _jobs, _studio, equations
 
-README = "README.md"
+README, CHANGES = "README.md", "CHANGES.md"
 # Of the numbers of a picture, what is shown on the page itself; all of them are a click away.
 _FEW, _FIRST = 16, 6
 
@@ -69,7 +69,7 @@ def run(
 
 
 def write_readme(items: Sequence[_studio.Item]) -> list[Path]:
-    """Write the README of every folder of goldens, and return those that were not so already.
+    """Write README and history of every folder of goldens, and return those that were not so already.
 
     Parameters
     ----------
@@ -96,12 +96,18 @@ def write_readme(items: Sequence[_studio.Item]) -> list[Path]:
 
 
 def readmes(items: Sequence[_studio.Item]) -> dict[Path, bytes]:
-    """Return what the README of every folder of goldens should say."""
-    by_root: dict[Path, list[entry.Entry]] = {}
+    """Return what the README and the history of every folder of goldens should say."""
+    by_root: dict[Path, list[_studio.Item]] = {}
     for item in items:
         if item.place.png.is_file():
-            by_root.setdefault(item.place.root, []).append(_said(item))
-    return {root / README: readme.build(_ordered(entries)).encode() for root, entries in by_root.items()}
+            by_root.setdefault(item.place.root, []).append(item)
+    texts = {}
+    for root, accepted in by_root.items():
+        entries = _ordered(map(_said, accepted))
+        past = {item.id: history.read(store.remembered(item.place)) for item in accepted}
+        texts[root / README] = readme.build(entries).encode()
+        texts[root / CHANGES] = changes.build(entries, past).encode()
+    return texts
 
 
 def _ordered(entries: Iterable[entry.Entry]) -> list[entry.Entry]:

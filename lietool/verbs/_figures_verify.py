@@ -1,7 +1,7 @@
 """`lietool figures verify`: the judge.  It writes pictures of failures, and never a golden."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -13,7 +13,7 @@ from lietool.golden import explain, folder, verdict
 from lietool.verbs import _jobs, _studio
 
 # Of these a reader wants to see the pictures.
-_SEEN = {"picture", "size", "missing", "torn", "half accepted", "parameters"}
+_SEEN = {"picture", "size", "missing", "torn", "half accepted", "parameters", "inputs"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,13 @@ def _judged(item: _studio.Item, studio: _studio.Studio | None, failed: Path) -> 
         return Result(item, verdict.Verdict((found,)))
 
 
-def judge(item: _studio.Item, painted: _studio.Painted, *, pictured: bool = True) -> verdict.Verdict:
+def judge(
+    item: _studio.Item,
+    painted: _studio.Painted,
+    *,
+    pictured: bool = True,
+    now: Mapping[str, str] | None = None,
+) -> verdict.Verdict:
     """Compare a plate that was painted with its golden, by the plate's own tolerance.
 
     Parameters
@@ -97,6 +103,8 @@ def judge(item: _studio.Item, painted: _studio.Painted, *, pictured: bool = True
         What it shows.
     pictured : bool
         Whether the picture is compared, or its numbers only.
+    now : Mapping[str, str], optional
+        What it is made from and by, as `_studio.made_by` tells.
 
     Returns
     -------
@@ -111,6 +119,8 @@ def judge(item: _studio.Item, painted: _studio.Painted, *, pictured: bool = True
         image=painted.image if pictured else None,
         missing_labels=painted.missing_labels,
         limits=verdict.Limits(tolerance.pixels, tolerance.delta_e, tolerance.lowpass, tolerance.relative),
+        now=now,
+        program=item.program,
     )
 
 
@@ -119,15 +129,16 @@ def _verify(item: _studio.Item, studio: _studio.Studio, failed: Path) -> Result:
         # Numbers need no renderer: they are judged even so.
         return Result(item, judge(item, studio.sketch(item), pictured=False))
     painted = studio.paint(item)
-    found = judge(item, painted)
+    found = judge(item, painted, now=_studio.made_by(item, studio.info))
     pictures, lines = {}, []
-    if _SEEN & {finding.kind for finding in found.findings}:
+    kinds = {finding.kind for finding in found.findings}
+    if _SEEN & kinds:
         pictures["actual"] = painted.image
         if found.golden is not None:
             pictures["expected"] = found.golden.image
         if found.golden is not None and found.comparison is not None and found.comparison.same_size:
             pictures["difference"] = explain.amplified(found.golden.image, painted.image)
-            if not found.comparison.passes:
+            if "picture" in kinds:
                 lines = explain.lines(found.golden.image, painted.image, found.comparison)
     with _studio.writing(str(failed)):
         left = explain.leave(failed, item.id, **pictures)

@@ -1,6 +1,5 @@
 """From a figure and its parameters to a file: a picture, or frames over the figure's time."""
 
-import json
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -12,7 +11,7 @@ import click
 import lietool
 from lietool import atomic, paths
 from lietool.figure import Drawing, Figure, Time, project
-from lietool.verbs import _film, _mesh, _size
+from lietool.verbs import _film, _mesh, _recorded, _size
 from lietool.verbs._film import sweep as sweep
 
 if TYPE_CHECKING:
@@ -73,6 +72,12 @@ class Quality:
         plain = Quality()
         names = ("size", "dpi", "theme", "draft", "backend")
         return [f"--{name}" for name in names if getattr(self, name) != getattr(plain, name)]
+
+    @property
+    def other(self) -> dict[str, str]:
+        """What a picture should tell of itself where it was not drawn as goldens are."""
+        said = {"theme": self.theme, "draft": "yes" if self.draft else ""}
+        return {key: value for key, value in said.items() if value not in ("", "book")}
 
     @property
     def density(self) -> float | None:
@@ -222,7 +227,7 @@ def _still(figure: Figure, values: dict[str, Any], drawing: Drawing, ending: str
 
     if ending not in VECTORS:
         image = _render(drawing.picture, quality)
-        return export.png(image, provenance(figure, values), quality.density)
+        return export.png(image, provenance(figure, values) | quality.other, quality.density)
     from lietool.render import vector
 
     picture = drawing.picture
@@ -312,7 +317,7 @@ def _about(figure: Figure, values: Mapping[str, Any]) -> dict[str, str]:
         "Title": figure.summary.rstrip("."),
         "Software": f"lietool {lietool.__version__}",
         "command": figure.name,
-        "parameters": json.dumps(values, default=str, ensure_ascii=False),
+        "parameters": _recorded.parameters(figure, values),
     }
     for plate_id, plate in figure.plates.items():
         if figure.plate_params(plate_id) == values:

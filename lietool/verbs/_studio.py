@@ -1,13 +1,14 @@
 """Where the verbs get pictures from: every plate with its place, the renderer, and what is to be recorded."""
 
 import contextlib
-import json
 import os
+import platform
+import shlex
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import cached_property
+from functools import cache, cached_property
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,12 +19,17 @@ import lietool
 from lietool import figure as figure_
 from lietool import paths
 from lietool.figure import Figure, Plate
+from lietool.verbs import _recorded
 from lietool.verbs._size import Size
 
 if TYPE_CHECKING:
     import numpy as np
 
     from lietool.golden.store import Place
+
+
+# What figures compute and pictures are made with.
+_PACKAGES = ("moderngl", "numpy", "scipy", "pillow", "matplotlib", "scikit-image", "trimesh")
 
 
 class Stop(click.ClickException):
@@ -75,6 +81,15 @@ class Item:
         return Place(paths.GOLDEN if folder == paths.FIGURES else folder.parent / "golden", chapter, self.id)
 
     @property
+    def program(self) -> str:
+        """How to call the program so that it knows this plate."""
+        if self.declared.file.is_relative_to(paths.FIGURES):
+            return "lietool"
+        name = os.environ.get(figure_.PROJECT, "")
+        here = "." if name and os.path.realpath(name) == os.path.realpath(".") else name
+        return shlex.join(["lietool", "--project", here])
+
+    @property
     def parameters(self) -> dict[str, Any]:
         """The plate's parameters."""
         return self.declared.plate_params(self.id)
@@ -82,20 +97,19 @@ class Item:
     @property
     def recorded(self) -> str:
         """The plate's parameters as a golden records them."""
-        values = {
-            key: value.as_posix() if isinstance(value, Path) else value
-            for key, value in self.parameters.items()
-        }
-        return json.dumps(values, ensure_ascii=False)
+        return _recorded.parameters(self.declared, self.parameters)
 
 
-def items(wanted: Sequence[str] = ()) -> list[Item]:
+def items(wanted: Sequence[str] = (), *, everything: bool = False) -> list[Item]:
     """List the plates, all or those that are named.
 
     Parameters
     ----------
     wanted : sequence of str
-        Ids in any case; a command stands for all its plates.
+        Ids in any case; a command stands for all its plates.  Without them it is all, where there is a
+        project all of the project: the book's are there to be named.
+    everything : bool
+        The book's and the project's.
 
     Returns
     -------
@@ -111,6 +125,8 @@ def items(wanted: Sequence[str] = ()) -> list[Item]:
     """
     try:
         known = figure_.plates()
+        own = figure_.project()
+        at_hand = known if own is None else figure_.plates((own / "figures",))
     except figure_.FigureError as error:
         raise Stop(2, str(error)) from None
     chosen = set()
@@ -122,7 +138,8 @@ def items(wanted: Sequence[str] = ()) -> list[Item]:
             hint = figure_.nearest(word, [*known, *known.values()])
             raise click.UsageError(f"no plate {word!r}.{hint} See `lietool figures list`.")
         chosen.update(found)
-    return [Item(i, command) for i, command in known.items() if i in chosen or not wanted]
+    listed = chosen if wanted else set(known if everything else at_hand)
+    return [Item(i, command) for i, command in known.items() if i in listed]
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,21 +236,46 @@ def provenance(item: Item, info: Mapping[str, Any]) -> dict[str, str]:
     dict
         Keywords and texts.
     """
-    versions = {name: metadata.version(name) for name in ("moderngl", "numpy", "matplotlib")}
     return {
         "plate": item.id,
         "command": item.command,
         "parameters": item.recorded,
         "date": _date(),
         "commit": _commit(item.declared.file.parent),
+        **made_by(item, info),
+    }
+
+
+def made_by(item: Item, info: Mapping[str, Any]) -> dict[str, str]:
+    """Collect what may make two pictures of a plate differ though its code and parameters are the same.
+
+    Parameters
+    ----------
+    item : Item
+        The plate.
+    info : Mapping[str, object]
+        What renders, as the context tells it.
+
+    Returns
+    -------
+    dict
+        Keywords and texts: the files that it is drawn from, the renderer, and versions.
+    """
+    return {
+        "inputs": _recorded.inputs(item.parameters),
         "renderer": str(info["renderer"]),
         "backend": str(info["backend"]),
         "mesa": str(info.get("mesa") or "unknown"),
         "llvm": str(info.get("llvm") or "unknown"),
-        **versions,
-        # Not from the metadata, which an editable install keeps from the day it was made.
-        "lietool": lietool.__version__,
+        **_versions(),
     }
+
+
+@cache
+def _versions() -> dict[str, str]:
+    found = {name: metadata.version(name) for name in _PACKAGES}
+    # Not from the metadata, which an editable install keeps from the day it was made.
+    return {"python": platform.python_version(), **found, "lietool": lietool.__version__}
 
 
 @contextlib.contextmanager
@@ -242,7 +284,7 @@ def writing(what: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise Stop(2, f"{what} cannot be written: {error}") from None
+        raise Stop(2, f"{what} cannot be written: {error.strerror or error}") from None
 
 
 def _date() -> str:

@@ -1,6 +1,7 @@
 """List the plates, build them, and verify or accept them against their goldens."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,8 @@ def command() -> None:
     """List the plates, build them, and verify or accept them against their goldens.
 
     IDS are plates such as B2.8, in any case; a command such as slerp stands for
-    all its plates.  Without IDS it is all plates.
+    all its plates.  Without IDS it is all plates; with --project it
+    is all of the project, and those of the book can be named.
     """
 
 
@@ -125,6 +127,9 @@ def verify(context: click.Context, ids: tuple[str, ...], folder: Path, jobs: int
     from lietool.verbs import _figures_verify
 
     items = _studio.items(ids)
+    if not items:
+        # A check that looks at nothing passes for ever.
+        raise _studio.Stop(2, "there is no plate to verify. Write a figure first: README.md has an example")
     context.exit(
         _figures_verify.run(
             items, _studio.current(), folder / "failed", as_json, everything=not ids, jobs=jobs
@@ -164,7 +169,7 @@ def accept(ids: tuple[str, ...], reason: str | None, everything: bool) -> None:
     help="Folder for the page.",
 )
 @click.option("--golden", is_flag=True, help="Take the accepted pictures and draw nothing.")
-@click.option("--readme", is_flag=True, help="Renew the README.md beside the goldens instead.")
+@click.option("--readme", is_flag=True, help="Renew README.md and CHANGES.md beside the goldens instead.")
 @_JOBS
 def gallery(ids: tuple[str, ...], folder: Path, golden: bool, readme: bool, jobs: int) -> None:
     """Make a page of the plates, to open in a browser.
@@ -215,12 +220,14 @@ def _state(item: _studio.Item) -> str:
 
 
 def _describe(item: _studio.Item) -> dict[str, Any]:
-    from lietool.golden import store
+    from lietool.golden import history, store
 
     try:
         golden: dict[str, str] = store.provenance(item.place)
     except store.GoldenError as error:
         golden = {"state": f"{error.kind}: {error}"}
+    past = [asdict(change) for change in history.read(golden)]
+    golden.pop(history.KEY, None)
     code = item.figure.function.__code__
     return {
         "plate": item.id,
@@ -231,12 +238,13 @@ def _describe(item: _studio.Item) -> dict[str, Any]:
         "parameters": json.loads(item.recorded),
         "file": f"{item.figure.file}:{code.co_firstlineno}",
         "golden": {"file": str(item.place.png), **golden},
+        "history": past,
     }
 
 
 def _making(item: _studio.Item) -> str:
     first = item.id == next(iter(item.declared.plates))
-    return f"lietool {item.command}" + ("" if first else f" --plate {item.id}")
+    return f"{item.program} {item.command}" + ("" if first else f" --plate {item.id}")
 
 
 def _lines(about: dict[str, Any]) -> list[str]:
@@ -247,4 +255,9 @@ def _lines(about: dict[str, Any]) -> list[str]:
     for key in ("parameters", "golden"):
         lines.append(f"  {key}")
         lines += [f"    {name:<16}{value}" for name, value in about[key].items()]
+    if about["history"]:
+        lines.append("  accepted")
+    for change in about["history"]:
+        what = f" ({change['what']})" if change["what"] else ""
+        lines.append(f"    {change['date']:<16}  {change['commit']}: {change['reason']}{what}")
     return lines

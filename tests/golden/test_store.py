@@ -46,9 +46,13 @@ def test_what_is_written_is_read(place):
 
 def test_a_picture_is_written_last_and_labels_first(place, monkeypatch):
     order = []
-    monkeypatch.setattr(store.atomic, "write_bytes", lambda path, data: order.append(path))
+    real = store.atomic.write_bytes
+    monkeypatch.setattr(
+        store.atomic, "write_bytes", lambda path, data: order.append(path) or real(path, data)
+    )
     write(place)
-    assert order == [place.labels / "k1.png", place.json, place.png]
+    assert order == [place.labels / "k1.png", place.json.with_name(".T1.b.json.next"), place.png]
+    assert not order[1].exists() and place.json.is_file()
 
 
 def test_no_golden_at_all_is_missing(place):
@@ -92,7 +96,7 @@ def test_a_file_cut_anywhere_or_with_any_byte_changed_is_never_taken_for_a_golde
 def test_what_is_no_picture_at_all_is_torn(place):
     write(place)
     place.png.write_bytes(b"hello")
-    with pytest.raises(store.GoldenError, match="it is no PNG"):
+    with pytest.raises(store.GoldenError, match="it is no picture that can be read"):
         store.read(place)
     place.png.unlink()
     place.png.mkdir()
@@ -221,7 +225,7 @@ for step in range(1, 100):
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forks")
 @pytest.mark.parametrize("before", ["old", "none"])
-def test_killed_at_any_step_it_leaves_the_old_the_new_or_a_half_that_says_so(tmp_path, before):
+def test_killed_at_any_step_it_leaves_the_old_golden_or_the_new(tmp_path, before):
     script = tmp_path / "driver.py"
     script.write_text(DRIVER)
     (tmp_path / "golden").mkdir()
@@ -231,11 +235,12 @@ def test_killed_at_any_step_it_leaves_the_old_the_new_or_a_half_that_says_so(tmp
     assert done.returncode == 0, done.stderr
     steps = [line.split(maxsplit=2) for line in done.stdout.splitlines()]
     left = [kind for _, _, kind in steps]
-    # Three files, each opened, synced, made readable and renamed, killed before and after.
-    assert [how for _, how, _ in steps] == ["killed"] * 24 + ["lived"]
+    # Three files, each opened, synced, made readable and renamed, killed before and after; the numbers are
+    # made readable and renamed once more.
+    assert [how for _, how, _ in steps] == ["killed"] * 28 + ["lived"]
     first = "old" if before == "old" else "missing"
-    # The label's eight steps, and the numbers' until they are renamed; then until the picture is.
-    assert left == [first] * 15 + ["half accepted"] * 8 + ["new"] * 2
+    # All up to the moment at which the picture gets its name, and all after it.
+    assert left == [first] * 25 + ["new"] * 4
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no flock")
