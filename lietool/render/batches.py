@@ -149,9 +149,8 @@ def _(record: Lines, lens: Lens) -> list[Batch]:
         points, color = dashed(points, color, record.dash, lens)
     lift = record.lift * lens.camera.height
     data = _segments(points, color, half_width, lift)
-    if not len(data):
-        return []
-    return [Batch("lines", data.astype("f4"), lens.depth((data[:, 3:6] + data[:, 6:9]) / 2.0) - lift)]
+    depth = lens.depth((data[:, 3:6] + data[:, 6:9]) / 2.0) - lift
+    return [Batch("lines", data.astype("f4"), depth)] if len(data) else []
 
 
 @batches.register
@@ -268,19 +267,16 @@ def runs(points: np.ndarray) -> list[slice]:
 
 def _segments(points: np.ndarray, color: np.ndarray, half_width: float, lift: float) -> np.ndarray:
     """The segments of all polylines, each with the points before and after it; shape (n, 22)."""
-    found = runs(points)
-    first, last = (np.array([getattr(s, end) for s in found], int) for end in ("start", "stop"))
-    last -= 1
-    closed = (last - first > 1) & (points[first] == points[last]).all(axis=1)
+    first, last = np.array([(s.start, s.stop - 1) for s in runs(points)], int).reshape(-1, 2).T
     count = last - first
+    closed = (count > 1) & (points[first] == points[last]).all(axis=1)
     # Of each segment where it starts, and of its polyline where that begins and ends.
     at = np.arange(count.sum()) + np.repeat(first - (np.cumsum(count) - count), count)
     head, tail, ring = (np.repeat(of, count) for of in (first, last, closed))
     before = np.where(at > head, at - 1, np.where(ring, tail - 1, head))
     after = np.where(at + 1 < tail, at + 2, np.where(ring, head + 1, tail))
-    rest = np.broadcast_to([half_width, lift], (len(at), 2))
-    parts = (*(points[i] for i in (before, at, at + 1, after)), color[at], color[at + 1], rest)
-    return np.concatenate(parts, axis=-1)
+    parts = [points[before], points[at], points[at + 1], points[after], color[at], color[at + 1]]
+    return np.concatenate([*parts, np.broadcast_to([half_width, lift], (len(at), 2))], axis=-1)
 
 
 def whole_strokes(dash: tuple[float, float], length: float) -> tuple[int, float]:
@@ -322,7 +318,7 @@ def dashed(
         count, scale = whole_strokes(dash, float(length[-1]))
         first = np.arange(count) * (stroke + gap) * scale
         last = first + stroke * scale
-        low, high = np.searchsorted(length, first, "right"), np.searchsorted(length, last, "left")
+        low, high = np.searchsorted(length, first, "right"), np.searchsorted(length, last)
         ends = zip(first, low, high, last, strict=True)
         at = np.concatenate([part for a, i, j, b in ends for part in ([a], length[i:j], [b, np.nan])])
         scaled = np.interp(at, length, weight)

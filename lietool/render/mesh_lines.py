@@ -5,6 +5,7 @@ renderer leaves out what the mesh hides.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,7 +42,13 @@ class Edges:
 
 def edges(F: ArrayLike) -> Edges:
     """Return the edges of faces (m, 3), each once."""
-    F = np.asarray(F, np.intp).reshape(-1, 3)
+    return _edges(np.asarray(F, np.intp).tobytes())
+
+
+# One mesh is drawn in many poses, and in every frame of a film.
+@lru_cache(maxsize=16)
+def _edges(faces: bytes) -> Edges:
+    F = np.frombuffer(faces, np.intp).reshape(-1, 3)
     if not len(F):
         none = np.zeros((0, 2), np.intp)
         return Edges(none, none, none)
@@ -54,7 +61,10 @@ def edges(F: ArrayLike) -> Edges:
     pair = np.stack([order[first], order[np.minimum(first + 1, len(order) - 1)]], axis=1)
     inside = np.stack([np.ones(len(first), bool), count > 1], axis=1)
     sides = np.where(inside, pair // 3, -1)
-    return Edges(half[order[first]], sides, np.where(inside, tip[pair], -1))
+    found = Edges(half[order[first]], sides, np.where(inside, tip[pair], -1))
+    for array in (found.ends, found.sides, found.opposite):
+        array.setflags(write=False)
+    return found
 
 
 def face_normals(V: ArrayLike, F: ArrayLike) -> Array:
