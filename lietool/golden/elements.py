@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lietool.golden.compare_numbers import Difference
+from lietool.golden.compare_numbers import SMALLEST_SCALE, Difference
 from lietool.golden.numbers import Numbers, array_of, leaves
 
 _MOST = 6
@@ -51,6 +51,37 @@ def worst(
         for found in differences
         if found.kind == "value"
     }
+
+
+def nearest(expected: Numbers, got: Numbers, relative: float) -> tuple[str, float]:
+    """Find the entry of floats that is nearest to what is allowed, or farthest beyond it.
+
+    Parameters
+    ----------
+    expected, got : Mapping[str, object]
+        Two sets of numbers.
+    relative : float
+        As `compare_numbers.numbers` takes it.
+
+    Returns
+    -------
+    entry : str
+        Its dotted name; empty where nothing is off.
+    used : float
+        The part of what is allowed that it is off.
+    """
+    after, found = dict(leaves(got)), ("", 0.0)
+    for entry, value in leaves(expected):
+        if entry not in after:
+            continue
+        a, b = array_of(entry, value), array_of(entry, after[entry])
+        if a.dtype.kind != "f" or b.dtype.kind != "f" or a.shape != b.shape or not a.size:
+            continue
+        scale = max(float(np.abs(a[np.isfinite(a)]).max(initial=0.0)), SMALLEST_SCALE)
+        used = float(np.abs(_off(a, b)).max()) / (relative * scale) if relative else 0.0
+        if used > found[1]:
+            found = entry, used
+    return found
 
 
 def place(entry: str, index: tuple[int, ...], shape: tuple[int, ...]) -> str:

@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from lietool.golden import compare, compare_numbers, elements, explain
+from lietool.golden import compare, compare_numbers, explain
+from lietool.golden import elements as elements_
 from lietool.golden import numbers as numbers_
 
 FAILED, CHANGED, PASSED = "failed", "changed", "passed"
@@ -29,6 +30,8 @@ class Entry:
     is a map of the similarity of a failure.  `because` is the reason of a
     tolerance that is not the usual one, `provenance` that of the golden and
     that of now, `accept` the command that accepts it, without the reason.
+    `counted` says how many entries of numbers were compared, and `nearest` which
+    one is nearest to its limit and what part of it is used, beyond 1 if it differs.
     `digests` name what was drawn now, the picture's and the numbers', as
     `picture_digest` and `numbers_digest` make them; empty where nothing was.
     """
@@ -48,7 +51,9 @@ class Entry:
     parameters: Mapping[str, str] = field(default_factory=dict)
     provenance: tuple[Mapping[str, str], Mapping[str, str]] = _NOTHING
     accept: str = ""
-    elements: Mapping[str, tuple[elements.Element, ...]] = field(default_factory=dict)
+    elements: Mapping[str, tuple[elements_.Element, ...]] = field(default_factory=dict)
+    counted: int = 0
+    nearest: tuple[str, float] = ("", 0.0)
     digests: tuple[str, str] = ("", "")
 
 
@@ -64,6 +69,7 @@ def entry(
     before: numbers_.Numbers | None = None,
     after: numbers_.Numbers | None = None,
     differences: Sequence[compare_numbers.Difference] | None = None,
+    relative: float = compare_numbers.RELATIVE,
     because: str = "",
     parameters: Mapping[str, str] | None = None,
     provenance: tuple[Mapping[str, str], Mapping[str, str]] = _NOTHING,
@@ -88,7 +94,9 @@ def entry(
     before, after : Mapping[str, object], optional
         The numbers of the golden and of now.
     differences : sequence of Difference, optional
-        Of the two sets of numbers; by the usual limits where none are given.
+        Of the two sets of numbers; found here where none are given.
+    relative : float
+        The part of the largest expected magnitude that a number may be off.
     because : str
         Why the tolerance is not the usual one.
     parameters : Mapping[str, str], optional
@@ -112,7 +120,7 @@ def entry(
         comparison = compare.images(expected, actual)
     if differences is None:
         both = before is not None and after is not None
-        differences = compare_numbers.numbers(before or {}, after or {}) if both else ()
+        differences = compare_numbers.numbers(before or {}, after or {}, relative) if both else ()
     kind = _kind(bool(messages or differences), comparison)
     blobs, ssim = (), None
     if expected is not None and actual is not None and comparison and comparison.same_size:
@@ -137,7 +145,9 @@ def entry(
         parameters=parameters or {},
         provenance=provenance,
         accept=accept,
-        elements=elements.worst(tuple(differences), before or {}, after or {}),
+        elements=elements_.worst(tuple(differences), before or {}, after or {}),
+        counted=sum(1 for _ in numbers_.leaves(before or {})),
+        nearest=elements_.nearest(before or {}, after or {}, relative),
         digests=(
             "" if actual is None else picture_digest(actual),
             "" if after is None else numbers_digest(after),
@@ -178,7 +188,14 @@ def numbers_digest(values: numbers_.Numbers) -> str:
     return hashlib.sha256(numbers_.dumps(values).encode()).hexdigest()
 
 
-def build(entries: Sequence[Entry], *, title: str, about: Mapping[str, str], review: str = "") -> str:
+def build(
+    entries: Sequence[Entry],
+    *,
+    title: str,
+    about: Mapping[str, str],
+    notes: Sequence[str] = (),
+    review: str = "",
+) -> str:
     """Make the page.
 
     Parameters
@@ -189,6 +206,8 @@ def build(entries: Sequence[Entry], *, title: str, about: Mapping[str, str], rev
         Of the page.
     about : Mapping[str, str]
         Of the whole run: renderer, versions, date.
+    notes : sequence of str
+        What is wrong with the run as a whole, such as a renderer that cannot be compared.
     review : str
         The command that applies a downloaded review.json; where there is none, the page gives the
         `accept` commands one by one, without their reasons.
@@ -210,7 +229,7 @@ def build(entries: Sequence[Entry], *, title: str, about: Mapping[str, str], rev
         raise ValueError(
             f"report.build: entries must have names that differ; got {', '.join(twice)} twice. Rename one."
         )
-    return report_page.render(entries, title=title, about=about, review=review)
+    return report_page.render(entries, title=title, about=about, notes=notes, review=review)
 
 
 def _kind(wrong: bool, comparison: compare.Comparison | None) -> str:
