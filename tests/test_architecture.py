@@ -53,7 +53,7 @@ RULES = {
     "deform": _rule("deform lie mesh", "numpy", "scipy skimage"),
     "bench": _rule("bench lie mesh interp deform", "numpy mpmath", "scipy pytransform3d"),
     "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib av"),
-    "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest"),
+    "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest jinja2 markupsafe"),
     "gallery": _rule("gallery " + _BELOW, "jinja2 markupsafe", "matplotlib"),
     "verbs": _rule(_ALL, "click", "numpy PIL rich moderngl"),
     # Imported by a verb when it is called, so what it needs may stand at its top.
