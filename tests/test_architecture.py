@@ -56,7 +56,7 @@ RULES = {
     "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest"),
     "gallery": _rule("gallery " + _BELOW, "jinja2 markupsafe", "matplotlib"),
     # It puts mistakes into what others import, and must not have imported that itself.
-    "mutation": _rule("mutation lietool " + _BELOW),
+    "mutation": _rule("mutation lietool render golden " + _BELOW, "numpy"),
     "verbs": _rule(_ALL, "click", "numpy PIL rich moderngl"),
     # Imported by a verb when it is called, so what it needs may stand at its top.
     "a part of a verb": _rule(_ALL, "click numpy", "PIL rich moderngl"),
