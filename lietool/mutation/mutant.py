@@ -32,7 +32,7 @@ MISTAKES = {
 }
 """What mistakes are called; behind "erratum" and "scaled" stands more."""
 
-_NAME = re.compile(r"[a-z][a-z0-9_.]*: \S.*")
+_NAME = re.compile(r"[a-z][A-Za-z0-9_.]*: \S.*")
 _MORE = re.compile(r"erratum [BKM] \S.*|scaled 1e-[1-4]")
 
 
