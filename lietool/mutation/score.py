@@ -34,6 +34,10 @@ class Outcome:
         Grey levels of the 9x9 mean.
     says : str
         How it failed, or the first number that differs.
+    ended : bool
+        Whether the process hung or died, so that no further plate was tried.
+    skipped : bool
+        Whether it was not tried, since enough others had noticed.
     """
 
     plate: str
@@ -45,6 +49,8 @@ class Outcome:
     over: int = 0
     lowpass: float = 0.0
     says: str = ""
+    ended: bool = False
+    skipped: bool = False
 
     @property
     def by(self) -> tuple[str, ...]:

@@ -16,6 +16,8 @@ from lietool.mutation.mutant import Mutant, MutantError, chosen
 from lietool.mutation.score import Tried
 from lietool.verbs import _mutants_run, _studio, _table
 
+# Plates whose pictures notice a mutant: more would only say the same.
+_ENOUGH = 6
 # Of a quick run: what may be planned on one processor, and when no further mutant is begun.
 _PLANNED, _LAST_BEGIN = 32.0, 38.0
 
@@ -29,6 +31,7 @@ class Wanted:
     quick: bool = False
     seed: int = 0
     fresh: bool = False
+    every: bool = False
     record: bool = False
     as_json: bool = False
 
@@ -70,7 +73,7 @@ def run(items: Sequence[_studio.Item], wanted: Wanted) -> int:
         raise _studio.Stop(
             2, "--record keeps a whole run on our own plates. Leave out names, --quick and --project"
         )
-    order = _mutants_run.Order(wanted.jobs, wanted.fresh)
+    order = _mutants_run.Order(wanted.jobs, wanted.fresh, enough=10**6 if wanted.every else _ENOUGH)
     if wanted.quick:
         mutants, order = _quick(mutants, commands, wanted)
     try:
@@ -107,7 +110,9 @@ def _quick(
         )
     by_name = {mutant.name: mutant for mutant in mutants}
     until = time.monotonic() + _LAST_BEGIN
-    return tuple(by_name[name] for name in plan), _mutants_run.Order(wanted.jobs, wanted.fresh, until, plan)
+    return tuple(by_name[name] for name in plan), _mutants_run.Order(
+        wanted.jobs, wanted.fresh, until, plates=plan
+    )
 
 
 def _chosen(names: Sequence[str]) -> tuple[Mutant, ...]:

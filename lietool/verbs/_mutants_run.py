@@ -4,9 +4,10 @@ import hashlib
 import json
 import shutil
 import tempfile
+import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from lietool import atomic, cache, figure, paths
@@ -33,6 +34,9 @@ class Order:
         Whether what is kept of earlier runs is left alone.
     until : float
         When, by `time.monotonic`, no further mutant is begun.
+    enough : int
+        A mutant that so many plates notice by the picture, at least one of every command having been
+        tried, is not tried on others.
     plates : Mapping[str, Collection of str], optional
         For each mutant's name the plates to try it on; without it all that execute what it changes.
     """
@@ -40,6 +44,7 @@ class Order:
     jobs: int = 1
     fresh: bool = False
     until: float = float("inf")
+    enough: int = 6
     plates: Mapping[str, Collection[str]] | None = None
 
 
@@ -83,9 +88,8 @@ def run(mutants: Sequence[Mutant], items: Sequence[_studio.Item], order: Order) 
             named = order.plates
             chosen = {m: [i for i in items if i.id in named[m.name]] for m in mutants if m.name in named}
         seconds = {plate: sum(made.seconds) for plate, made in references.items()}
-        for plates in chosen.values():
-            # The cheapest first: a run that is stopped has then seen the most.
-            plates.sort(key=lambda item: seconds[item.id])
+        # Where there was no time for a reference, nothing can be compared with it.
+        chosen = {m: _turns([i for i in plates if i.id in seconds], seconds) for m, plates in chosen.items()}
         return Done(tuple(_try(chosen, references, folder, order)), seconds)
 
 
@@ -106,7 +110,9 @@ def _references(items: Sequence[_studio.Item], folder: Path, order: Order) -> di
     found = {item.id: reference.read(_mutants_work.file(folder, item.id)) for item in items}
     stale = [item for item in items if not ((kept := found[item.id]) and kept.current)]
     jobs = [process.Job(i.id, _mutants_work.refer, ([i], folder), {i.id: _LONGEST}) for i in stale]
-    for news in _shown(jobs, order, "drawing without mistakes"):
+    # Half of the time is for the mutants.
+    half = time.monotonic() + 0.5 * (order.until - time.monotonic())
+    for news in _shown(jobs, replace(order, until=half), "drawing without mistakes"):
         if news.failure:
             raise _studio.Stop(2, f"{news.step} cannot be drawn even without a mistake: {news.failure[1]}")
         if news.value:
@@ -147,39 +153,55 @@ def _touched(
     return [item for item in items if changed.intersection(lines[item.id].get(mutant.module, ()))]
 
 
+def _turns(items: Sequence[_studio.Item], seconds: Mapping[str, float]) -> list[_studio.Item]:
+    """Sort plates so that the cheapest of every command comes first, and then the others."""
+    ranked = sorted(items, key=lambda item: seconds[item.id])
+    first = {item.command: item for item in reversed(ranked)}
+    return sorted(ranked, key=lambda item: first[item.command] != item)
+
+
 def _try(
     chosen: Mapping[Mutant, Sequence[_studio.Item]],
     references: Mapping[str, reference.Reference],
     folder: Path,
     order: Order,
 ) -> list[Tried]:
-    outcomes: dict[str, dict[str, Outcome]] = {}
+    outcomes = {mutant.name: _known(mutant, items, references, folder) for mutant, items in chosen.items()}
     jobs = []
     for mutant, items in chosen.items():
-        outcomes[mutant.name] = known = _known(mutant, items, references, folder)
-        hung = any(outcome.failure == "hangs" for outcome in known.values())
-        left = [] if hung else [item for item in items if item.id not in known]
+        known = outcomes[mutant.name]
+        left = _left(items, known, order)
         if left:
+            # Of every command that has none yet, one is tried whatever the others say.
+            least = len({item.command for item in items} - {i.command for i in items if i.id in known})
+            enough = order.enough - sum(outcome.picture for outcome in known.values())
             steps = {item.id: _LEAST + _TIMES * sum(references[item.id].seconds) for item in left}
-            jobs.append(process.Job(mutant.name, _mutants_work.attempt, (mutant, left, folder), steps))
-    begun = {name for name, found in outcomes.items() if found} | {m.name for m, i in chosen.items() if not i}
+            work = (mutant, left, folder, least, enough)
+            jobs.append(process.Job(mutant.name, _mutants_work.attempt, work, steps))
     by_name = {mutant.name: mutant for mutant in chosen}
     for news in _shown(jobs, order, "trying mutants"):
-        name = news.job.key
-        begun.add(name)
-        outcomes[name][news.step] = _outcome(news)
+        found = outcomes[news.job.key]
+        found[news.step] = _outcome(news)
         if news.last:
-            _keep(by_name[name], outcomes[name], references, folder)
+            _keep(by_name[news.job.key], found, references, folder)
     sampled = order.plates is not None
     return [
-        Tried(
-            mutant,
-            tuple(outcomes[mutant.name][i.id] for i in items if i.id in outcomes[mutant.name]),
-            sampled,
-        )
+        Tried(mutant, _in_order(items, outcomes[mutant.name]), sampled)
         for mutant, items in chosen.items()
-        if mutant.name in begun
+        if outcomes[mutant.name] or not (items or sampled)
     ]
+
+
+def _left(items: Sequence[_studio.Item], known: Mapping[str, Outcome], order: Order) -> list[_studio.Item]:
+    """What is still to be tried of a mutant, after what earlier runs have found."""
+    if any(outcome.ended for outcome in known.values()):
+        return []
+    enough = sum(outcome.picture for outcome in known.values()) >= order.enough
+    return [i for i in items if i.id not in known or (known[i.id].skipped and not enough)]
+
+
+def _in_order(items: Sequence[_studio.Item], found: Mapping[str, Outcome]) -> tuple[Outcome, ...]:
+    return tuple(found[i.id] for i in items if i.id in found and not found[i.id].skipped)
 
 
 def _outcome(news: process.News) -> Outcome:
@@ -187,7 +209,7 @@ def _outcome(news: process.News) -> Outcome:
         return news.value
     kind, says = news.failure
     failure = "hangs" if kind == "hangs" else "undrawn"
-    return Outcome(news.step, changed=True, failure=failure, displacement=None, says=says)
+    return Outcome(news.step, changed=True, failure=failure, displacement=None, says=says, ended=True)
 
 
 def _shown(jobs: Sequence[process.Job], order: Order, doing: str) -> Iterator[process.News]:

@@ -56,19 +56,33 @@ def follow(items: Sequence[_studio.Item]) -> Iterator[dict[str, list[int]]]:
         yield {module: sorted(numbers) for module, numbers in found.items()}
 
 
-def attempt(mutant: Mutant, items: Sequence[_studio.Item], folder: Path) -> Iterator[Outcome]:
-    """Yield what comes of a mistake on each plate."""
+def attempt(
+    mutant: Mutant, items: Sequence[_studio.Item], folder: Path, least: int, enough: int
+) -> Iterator[Outcome]:
+    """Yield what comes of a mistake on each plate.
+
+    After the `least` first ones the others are skipped, once as many as are `enough` have noticed by the
+    picture.
+    """
     _keep_nothing()
     hook.install(mutant)
-    for item in items:
-        before = reference.read(file(folder, item.id))
-        assert before is not None
-        try:
-            yield _outcome(item, before)
-        except Exception as error:
-            yield Outcome(
-                item.id, changed=True, failure="undrawn", displacement=None, says=process.told(error)
-            )
+    seen = 0
+    for number, item in enumerate(items):
+        if number >= least and seen >= enough:
+            yield Outcome(item.id, skipped=True)
+            continue
+        outcome = _tried(item, folder)
+        seen += outcome.picture
+        yield outcome
+
+
+def _tried(item: _studio.Item, folder: Path) -> Outcome:
+    before = reference.read(file(folder, item.id))
+    assert before is not None
+    try:
+        return _outcome(item, before)
+    except Exception as error:
+        return Outcome(item.id, changed=True, failure="undrawn", displacement=None, says=process.told(error))
 
 
 def _outcome(item: _studio.Item, before: reference.Reference) -> Outcome:

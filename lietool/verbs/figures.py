@@ -191,6 +191,7 @@ def gallery(ids: tuple[str, ...], folder: Path, golden: bool, readme: bool, jobs
 @click.option("--quick", is_flag=True, help="A sample, within 50 seconds.")
 @click.option("--seed", metavar="N", type=click.IntRange(0), default=0, help="Of the sample.")
 @click.option("--fresh", is_flag=True, help="Use nothing that earlier runs have found.")
+@click.option("--every", is_flag=True, help="Also plates that are left out where many others notice.")
 @click.option("--record", is_flag=True, help="Keep what a whole run finds with the catalogues.")
 @_JOBS
 @_JSON
@@ -203,6 +204,7 @@ def mutants(
     quick: bool,
     seed: int,
     fresh: bool,
+    every: bool,
     record: bool,
     jobs: int,
     as_json: bool,
@@ -212,7 +214,8 @@ def mutants(
     NAMES are what names of mutants begin with, such as "so3.", or a module;
     without them it is the whole catalogue.  Each is tried by itself, in a process
     of its own, on the plates that execute what it changes, against the
-    plates without a mistake.  What was found is kept, so that a run that is
+    plates without a mistake; at least one plate of each command, and further
+    ones until six pictures have noticed.  What was found is kept, so that a run that is
     stopped goes on where it was.
     Ends with 5 if one that changes a plate is noticed by none, if one that moves
     something by 0.35 pixel is not noticed by a picture, or if the catalogue is
@@ -223,7 +226,7 @@ def mutants(
     if listing:
         _figures_mutants.listed(names, as_json)
         return
-    wanted = _figures_mutants.Wanted(names, jobs, quick, seed, fresh, record, as_json)
+    wanted = _figures_mutants.Wanted(names, jobs, quick, seed, fresh, every, record, as_json)
     context.exit(_figures_mutants.run(_studio.items(ids), wanted))
 
 
