@@ -3,7 +3,9 @@
 import contextlib
 import multiprocessing
 import os
+import signal
 import sys
+import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -171,6 +173,9 @@ def _child(connection: Connection, job: Job, environment: Mapping[str, str], thr
     os.environ.clear()
     # Read by Mesa when it is loaded, which it is not yet.
     os.environ.update({**environment, "LP_NUM_THREADS": str(threads)})
+    # Ctrl-C is for the one that began this, and ends it.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_follow, daemon=True).start()
     _limit_memory()
     # Whatever a wrong formula makes NumPy or a figure say, nobody wants to read it.
     nothing = open(os.devnull, "w")  # noqa: SIM115, PTH123
@@ -183,6 +188,13 @@ def _child(connection: Connection, job: Job, environment: Mapping[str, str], thr
     connection.close()
     # Nothing is left to clean up, and a renderer may be slow to end.
     os._exit(0)
+
+
+def _follow() -> None:
+    """End this process with the one that began it: a mistake may otherwise go on for ever."""
+    if parent := multiprocessing.parent_process():
+        parent.join()
+        os._exit(1)
 
 
 def told(error: BaseException) -> str:
