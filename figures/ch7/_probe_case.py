@@ -46,7 +46,7 @@ class Recipe:
     @property
     def words(self) -> str:
         """How the weights are made, for a legend."""
-        r = "r_i" if self.distance == "straight" else r"r_i\,(\mathrm{along\ the\ surface})"
+        r = "r_i"
         raised = "" if self.power == 1.0 else f"^{{{self.power:g}}}"
         formula = {
             "inverse-distance": f"1/{r}{raised}",
@@ -56,10 +56,11 @@ class Recipe:
         after = {
             "unity": ", divided by their sum",
             "softmax": ", by softmax",
-            "capped": ", at most 1 together",
+            "capped": r", divided by $\max(1, \sum w_i)$",
             "none": "",
         }[self.of_sum]
-        return f"weights ${formula}${after}"
+        along = "" if self.distance == "straight" else " along the surface"
+        return f"weights $w_i = {formula}${after}; $r_i$: distance to probe $i${along}"
 
 
 @dataclass(frozen=True, eq=False)
