@@ -48,7 +48,10 @@ _WORDS = {
         "name=lower centre=0,0,-2.2",
         f"name=upper centre=0,0,2.2 axis=0,-0.1,1 degrees={_TURN} translation=0,0.3,-0.5",
     ),
-    "vortex": (f"name=eye centre=0,0,0 axis=0,0,1 degrees={_TURN} translation=0,0,-1.1",),
+    "vortex": (
+        f"name=upper centre=0,0,0.25 axis=0,0,1 degrees={_TURN} translation=0,0,-0.9",
+        f"name=lower centre=0,0,-0.25 axis=0,0.2,1 degrees={_TURN} translation=0,0.2,-1.3",
+    ),
     "particles": (
         f"name=upper centre=-0.42,0,0.42 axis=0,1,0 degrees={_TURN}",
         f"name=lower centre=0.42,0,-0.42 axis=0,-1,0 degrees={_TURN} translation=0,0,0",
@@ -126,7 +129,7 @@ def _duck() -> tuple[Mesh, Look, Recipe, None]:
         beak,
         eyes=_eyes(s),
         eye=s.eye,
-        margin=1.16,
+        margin=1.12,
     )
     return _mesh(s), look, Recipe(power=2.5), None
 
@@ -141,6 +144,7 @@ def _cactus() -> tuple[Mesh, Look, Recipe, None]:
         (style.BETWEEN_EDGE, style.ROUTE_2, style.SHELLS[2]),
         parts,
         edges=(style.BEFORE_EDGE, style.SHELLS_TEXT[2]),
+        folds=0.05,
     )
     return _mesh(s), look, Recipe(power=2.0), None
 
@@ -175,6 +179,7 @@ def _octopus() -> tuple[Mesh, Look, Recipe, Array]:
         under,
         eyes=_eyes(s),
         eye=s.eye,
+        smooth=True,
     )
     a = np.clip((s.along - 0.05) / 0.9, 0.0, 1.0)
     painted = np.where(s.of("arm 0"), a * a * (3.0 - 2.0 * a), 0.0)[:, None]
@@ -185,7 +190,7 @@ def _vortex() -> tuple[Mesh, Look, Recipe, None]:
     cloud = particles.disc(18000, 12)
     tones = (style.AXIS_Z, style.RAMP[1], style.SHELLS[0])
     return _cloud(
-        cloud, tones, Look((1.0, 0.0, 0.84), 0.3, dots=3.2, margin=0.99), Recipe("cutoff", 1.6, 1.05)
+        cloud, tones, Look((1.0, 0.0, 0.84), 0.3, dots=3.2, margin=1.03), Recipe("cutoff", 2.5, 1.05)
     )
 
 
@@ -198,13 +203,13 @@ def _particles() -> tuple[Mesh, Look, Recipe, None]:
         style.ROUTE_1,
         style.SHELLS[0],
         style.AXIS_X,
-        style.AXIS_Y,
+        style.BETWEEN,
         style.ROUTE_2,
     )
     return _cloud(
         cloud,
         tones,
-        Look((0.25, -1.0, 0.2), 0.35, dots=3.4, margin=1.06, lens=4.0),
+        Look((0.14, -1.0, 0.16), 0.35, dots=3.4, margin=1.06, lens=4.0),
         Recipe("cutoff", 2.0, 0.9),
     )
 

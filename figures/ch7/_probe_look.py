@@ -70,7 +70,9 @@ class Look:
     """How a shape is shown.
 
     `before` and `after` are the colours of its patches, or of a cloud its points'; `eyes` are vertices;
-    `lens` is its angle of view in degrees, if not the usual one.
+    `lens` is its angle of view in degrees, if not the usual one; `folds` is how deep a fold must be, in
+    heights of the view, to have an outline before the shape itself; an outline that is `smooth` goes across
+    faces, for shapes whose faces are twisted far.
     """
 
     direction: Direction
@@ -86,6 +88,8 @@ class Look:
     y_up: bool = False
     margin: float = 1.10
     lens: float | None = None
+    folds: float = 0.0
+    smooth: bool = False
 
     def turned(self, around: float, above: float) -> "Look":
         """Return the same, seen from elsewhere: degrees round the shape and upwards."""
@@ -118,15 +122,24 @@ class Look:
             return [
                 *self._shadow(V, F, ground),
                 *mesh_look.surface(V, F, colors[0]),
-                *mesh_look.outline(V, F, camera, edge),
+                *self._outline(V, F, camera, edge),
             ]
         N = solids.normals(V, F)
         X, M = self.patches.carry(V), mesh_lines.unit(self.patches.carry(N))
         records = self._shadow(V, F, ground)
         for faces, color in zip(self.patches.faces, colors, strict=True):
             records += mesh_look.surface(X, faces, color, normals=M)
-        records += mesh_look.outline(V, F, camera, edge)
+        records += self._outline(V, F, camera, edge)
         return records + mesh_look.eyes(V, N, self.eyes, self.eye)
+
+    def _outline(self, V: Array, F: Index, camera: Camera, color: str) -> list[Record]:
+        records = mesh_look.outline(V, F, camera, color)
+        if self.smooth:
+            facing = np.sum(solids.normals(V, F) * (camera.eye - V), axis=1)
+            lines = mesh_lines.level_lines(V, F, facing, [0.0])
+            return [replace(r, points=lines) for r in records]  # type: ignore[call-arg]
+        # Behind its place it is hidden by what is a little behind it.
+        return [replace(r, lift=-self.folds) for r in records] if self.folds else records  # type: ignore[call-arg]
 
     def _shadow(self, V: Array, F: Index, ground: float | None) -> list[Record]:
         return mesh_look.shadow(V, F, ground) if self.stands else []

@@ -7,13 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lietool.figure import Drawing
-from lietool.render import mesh_look, mesh_page, style
+from lietool.render import marks, mesh_look, mesh_page, style
 from lietool.render.camera import Box, Camera, project
-from lietool.render.plot import number
+from lietool.render.plot import Axes, number
 from lietool.render.scene import Label, Lines, Picture, Record, View
 
+from . import _probe_arm as arm
 from . import _probe_measure as measure
+from ._close import framed, within
 from ._probe_case import Case, Moment, Moving
+from ._probe_look import Look
 
 Array = NDArray[np.float64]
 
@@ -30,10 +33,10 @@ _LEAST = 100.0
 # Between stages, over how wide they are.
 _GAP = 0.10
 # Degrees of view of a long lens.
-_LONG = 3.0
+_LONG = 0.5
 # A volume, over that at rest, that is called thin.
 _THIN = 2.0 / 3.0
-# By how much the column of another way is set apart, and what is in the middle from what is left of it.
+# By how much the column of another way is set apart.
 _ASIDE = 22.0
 
 
@@ -44,14 +47,14 @@ def _camera(moving: Sequence[Moving], box: Box) -> Camera:
     return camera if look.lens is None else replace(camera, fov=np.radians(look.lens))
 
 
-def shape(case: Case, points: Array, camera: Camera, stage: float) -> tuple[Record, ...]:
+def _shape(case: Case, points: Array, camera: Camera, stage: float) -> tuple[Record, ...]:
     look, rest = case.look, case.mesh.vertices
     ground = float(look.upright(rest)[:, 2].min())
     V = look.upright(points)
     return tuple(look.body(V, case.mesh.faces, camera, stage, min(ground, float(V[:, 2].min()))))
 
 
-def probes(
+def _probes(
     case: Case, moment: Moment, camera: Camera, moved: bool, arcs: bool = True, named: bool = True
 ) -> tuple[Record, ...]:
     look, records = case.look, []
@@ -59,16 +62,26 @@ def probes(
     for frame, x in zip(look.upright(moment.frames), moment.vectors, strict=True):
         records += mesh_look.probe(frame, look.probe, moved=moved)
         if arcs and moved and np.degrees(np.linalg.norm(x)) > _LEAST:
-            u, color = x @ up / np.linalg.norm(x), style.INK if look.dots else style.MARK
-            # Around that end of the axis that is seen better.
-            seen = 1.0 if camera.axes.sum(axis=0) @ u >= 0.0 else -1.0
-            center = frame[:3, 3] + (0.0 if look.dots else 0.8 * seen * look.probe) * u
-            text = None if named and not look.dots else ""
-            records += mesh_look.turn(center, x @ up, 0.5 * look.probe, camera, color=color, text=text)
+            records += _turn(frame, x @ up, look, camera, named)
     return tuple(records)
 
 
-def at_rest(moving: Moving) -> Moment:
+def _turn(frame: Array, x: Array, look: Look, camera: Camera, named: bool) -> list[Record]:
+    """The arrow of a turn, before a probe on its axis, or among points around the probe."""
+    angle = float(np.linalg.norm(x))
+    if look.dots:
+        return mesh_look.turn(frame[:3, 3], x, 0.72 * look.probe, camera, color=style.INK, text="")
+    u = x / angle
+    # Before that end of the axis that is seen better.
+    seen = 1.0 if camera.axes.sum(axis=0) @ u >= 0.0 else -1.0
+    # A spiral ends in front, where its head is seen from the side.
+    start = 0.5 * np.pi - angle if angle > 2.0 * np.pi else 0.0
+    text = None if named else ""
+    center = frame[:3, 3] + 1.15 * seen * look.probe * u
+    return mesh_look.turn(center, x, 0.62 * look.probe, camera, text=text, start=start)
+
+
+def _rest(moving: Moving) -> Moment:
     case = moving.case
     k = len(case.probes.names)
     n = len(case.mesh.vertices)
@@ -79,38 +92,30 @@ def pair(moving: Moving, t: float) -> Drawing:
     """Before and after, side by side."""
     case = moving.case
     boxes = mesh_page.grid(1, 2)
-    camera, rest, moment = _camera([moving], boxes[0]), at_rest(moving), moving.at(t)
+    camera, rest, moment = _camera([moving], boxes[0]), _rest(moving), moving.at(t)
     views = [
-        View(shape(case, rest.points, camera, 0.0), camera, boxes[0]),
-        View(probes(case, rest, camera, False), camera, boxes[0]),
-        View(shape(case, moment.points, camera, 1.0), camera, boxes[1]),
-        View(probes(case, moment, camera, True), camera, boxes[1]),
-        View(tuple(_names(case, rest, camera, boxes[0]) + _names(case, moment, camera, boxes[1]))),
+        View(_shape(case, rest.points, camera, 0.0), camera, boxes[0]),
+        View((*_probes(case, rest, camera, False), *_names(case, rest, camera)), camera, boxes[0]),
+        View(_shape(case, moment.points, camera, 1.0), camera, boxes[1]),
+        View((*_probes(case, moment, camera, True), *_names(case, moment, camera)), camera, boxes[1]),
         View((*mesh_page.titles(boxes, ["at rest", _moved(case, t, moment)]), mesh_page.legend(case.said))),
     ]
-    return Drawing(Picture(tuple(views)), numbers(moving, moment), case.mesh.moved(moment.points))
+    return Drawing(Picture(tuple(views)), _numbers(moving, moment), case.mesh.moved(moment.points))
 
 
-def _names(case: Case, moment: Moment, camera: Camera, box: Box) -> list[Record]:
+def _names(case: Case, moment: Moment, camera: Camera) -> list[Record]:
     """The numbers of several probes, of those that have grown with by how much; one's own stay unmarked."""
     count = len(moment.frames)
     if case.name == "own" or case.look.dots or count < 3:
         return []
     frames = case.look.upright(moment.frames)
-    # Beside the tip of the third axis, which ends outside of most shapes, and away from their middle.
-    tips = frames[:, :3, 3] + case.look.probe * frames[:, :3, 2]
-    seen = project(camera, box, tips)
-    middle = project(camera, box, case.look.upright(moment.points))[:, 0].mean()
     grown = np.cbrt(np.linalg.det(frames[:, :3, :3]) / np.linalg.det(case.probes.rest[:, :3, :3]))
     records: list[Record] = []
-    for k in range(count):
-        text = rf"$\mathbf{{{k + 1}}}$"
-        if abs(grown[k] - 1.0) > 1e-6:
-            text += rf" $(\times\,{number(grown[k], 2)})$"
-        at = (float(seen[k, 0]), float(seen[k, 1]), 0.0)
-        left = seen[k, 0] < middle - _ASIDE
-        offset = (-15.0 if left else 15.0, 10.0)
-        records.append(Label(text, at, style.INK, style.SMALL_TEXT, offset, "rc" if left else "lc"))
+    for k, (frame, by) in enumerate(zip(frames, grown, strict=True)):
+        up = frame[:3, 2]
+        text = rf"$\mathbf{{{k + 1}}}$" + (rf" $(\times\,{number(by, 2)})$" if abs(by - 1.0) > 1e-6 else "")
+        tip = frame[:3, 3] + case.look.probe * up
+        records.append(marks.beyond(text, tip, up, camera, size=style.SMALL_TEXT, gap=18.0, room=50.0))
     return records
 
 
@@ -121,11 +126,11 @@ def _moved(case: Case, t: float, moment: Moment) -> str:
         return f"pose {number(1.0 + t * (count - 1), 1)} of {count}"
     if case.look.dots and np.degrees(np.linalg.norm(moment.vectors, axis=1).max()) > _LEAST:
         # There is no room for it among the points.
-        return f"turned by {degrees(moment)}"
+        return f"turned by {_degrees(moment)}"
     return "moved" if t == 1.0 else f"moved, $t = {number(t, 2)}$"
 
 
-def numbers(moving: Moving, moment: Moment) -> dict[str, object]:
+def _numbers(moving: Moving, moment: Moment) -> dict[str, object]:
     """What every page shows: where the probes are, and the shape, and by how much it has moved."""
     case = moving.case
     V, X = case.mesh.vertices, moment.points
@@ -161,8 +166,8 @@ def row(moving: Moving, beside: Moving | None, t: float, steps: int) -> Drawing:
             V, frames = case.look.upright(m.points) + d, case.look.upright(m.frames).copy()
             frames[:, :3, 3] += d
             views.append(View(tuple(case.look.body(V, case.mesh.faces, camera, float(s))), camera, box))
-            frames_drawn = [r for f in frames for r in mesh_look.probe(f, case.look.probe, moved=s > 0.0)]
-            views.append(View(tuple(frames_drawn), camera, box))
+            probes = [r for f in frames for r in mesh_look.probe(f, case.look.probe, moved=s > 0.0)]
+            views.append(View(tuple(probes), camera, box))
     middles = [V.mean(axis=0) for V in extents]
     names = [_head(each, mesh_page.TITLE - 410.0 * k, 600.0) for k, each in enumerate(both)]
     volume = np.array([measure.volumes(case.mesh, ms) for ms in moments])
@@ -179,7 +184,7 @@ def row(moving: Moving, beside: Moving | None, t: float, steps: int) -> Drawing:
     }
     return Drawing(
         Picture(tuple(views)),
-        numbers(moving, moments[0][-1]) | leaning,
+        _numbers(moving, moments[0][-1]) | leaning,
         case.mesh.moved(moments[0][-1].points),
     )
 
@@ -191,7 +196,7 @@ def _below(moments: Sequence[Moment], volumes: Array, places: Sequence[float], y
     full = len(moments) <= 5
     for m, volume, x in zip(moments, volumes, places, strict=True):
         color = style.WRONG if full and volume < _THIN else style.INK
-        text = degrees(m) + (f", volume ${number(volume, 2)}$" if full else "")
+        text = _degrees(m) + (f", volume ${number(volume, 2)}$" if full else "")
         records.append(Label(text, (float(x), y, 0.0), color, style.SMALL_TEXT, anchor="cn"))
     return records
 
@@ -213,9 +218,14 @@ def _apart(case: Case, moments: Sequence[Sequence[Moment]], box: Box) -> tuple[A
     return shift, [V + d for V, d in zip(extents, shift, strict=True)]
 
 
-def degrees(moment: Moment) -> str:
+def _degrees(moment: Moment) -> str:
     """By how much the probe has turned that has turned most."""
     return f"${number(np.degrees(np.linalg.norm(moment.vectors, axis=1).max()), 0)}^{{\\circ}}$"
+
+
+def _asked(moving: Moving | None) -> str:
+    """What is said before an angle that a way does not keep."""
+    return "" if moving is None or moving.way.whole_turns else "asked: "
 
 
 def _head(moving: Moving, base: float, x: float) -> Label:
@@ -236,8 +246,8 @@ def columns(moving: Moving, beside: Moving | None, t: float, steps: int) -> Draw
     feet = [float(project(camera, box, case.look.upright(case.probes.rest)[0, :3, 3])[0]) for box in boxes]
     views: list[View] = []
     for box, m, (_, s) in zip(boxes, moments, shown, strict=True):
-        views.append(View(shape(case, m.points, camera, s), camera, box))
-        views.append(View(probes(case, m, camera, True, arcs=False), camera, box))
+        views.append(View(_shape(case, m.points, camera, s), camera, box))
+        views.append(View(_probes(case, m, camera, True, arcs=False), camera, box))
     page: list[Record] = [_head(moving, mesh_page.TITLE, 0.5 * (feet[0] + feet[len(times) - 1]))]
     if beside:
         page.append(_head(beside, mesh_page.TITLE, feet[-1]))
@@ -247,15 +257,71 @@ def columns(moving: Moving, beside: Moving | None, t: float, steps: int) -> Draw
         ]
         x = 0.5 * float(ends[-2].max() + ends[-1].min())
         page.append(Lines([(x, 94.0, 0.0), (x, 870.0, 0.0)], style.RULE, style.THIN))
-    # Before an angle that a way does not keep.
-    asked = [""] * len(times) + ["" if beside is None or beside.way.whole_turns else "asked: "]
+    asked = [""] * len(times) + [_asked(beside)]
     for text, m, x in zip(asked, moments, feet, strict=False):
         at = (x, boxes[0][1] - 16.0, 0.0)
-        page.append(Label(text + degrees(m), at, style.INK, style.SMALL_TEXT, anchor="cn"))
+        page.append(Label(text + _degrees(m), at, style.INK, style.SMALL_TEXT, anchor="cn"))
     views.append(View((*page, mesh_page.legend(case.said))))
     return Drawing(
         Picture(tuple(views)),
-        numbers(moving, moments[len(times) - 1])
+        _numbers(moving, moments[len(times) - 1])
         | {"times": times, "winding_degrees": np.array([measure.winding(m.points) for m in moments])},
         case.mesh.moved(moments[len(times) - 1].points),
     )
+
+
+def compare(moving: Moving, beside: Moving | None, t: float) -> Drawing:
+    """At rest and what is measured along the arm; below, the arm alone by another way and by one way."""
+    case = moving.case
+    whole, windows = (28.0, 462.0, 562.0, 360.0), [(612.0, 44.0, 552.0, 352.0), (36.0, 44.0, 552.0, 352.0)]
+    ways = [moving] + ([beside] if beside else [])
+    rest = _rest(moving)
+    moments = [each.at(t) for each in ways]
+    camera = mesh_page.together([arm.whole(case, [rest])], case.look.direction, whole, 1.04)
+    near = mesh_page.together([arm.close(case, [rest, *moments])], case.look.direction, windows[0], 1.04)
+    views = [
+        View(_shape(case, rest.points, camera, 0.0), camera, whole),
+        View(_probes(case, rest, camera, False), camera, whole),
+    ]
+    for box, m in zip(windows, moments, strict=False):
+        views.append(View(tuple(within(_shape(case, m.points, near, 1.0), near, box)), near, box))
+        views.append(View(_probes(case, m, near, True, named=False), near, box))
+    along = measure.ALONG
+    twists = [measure.twist(m.points, m.vectors[0]) for m in moments]
+    heads = [("at rest", 309.0, mesh_page.TITLE), ("turn along the arm", 930.0, mesh_page.TITLE)]
+    heads += [
+        (WORDS[each.way.name], box[0] + 0.5 * box[2], 418.0) for each, box in zip(ways, windows, strict=False)
+    ]
+    page: list[Record] = [
+        Label(text, (x, y, 0.0), style.INK, style.TITLE_TEXT, anchor="cn") for text, x, y in heads
+    ]
+    for box, m, each in zip(windows, moments, ways, strict=False):
+        at = (box[0] + box[2] - 14.0, box[1] + box[3] - 48.0, 0.0)
+        text = _asked(each) + _degrees(m)
+        page += [framed(box), Label(text, at, style.MARK, style.SMALL_TEXT, anchor="rn")]
+    views.append(View((*page, *_plot(ways, along, twists))))
+    found = {f"twist_degrees_{each.way.name}": twist for each, twist in zip(ways, twists, strict=True)}
+    return Drawing(
+        Picture(tuple(views)),
+        _numbers(moving, moments[0]) | {"along": along} | found,
+        case.mesh.moved(moments[0].points),
+    )
+
+
+def _plot(ways: Sequence[Moving], along: Array, twists: Sequence[Array]) -> list[Record]:
+    least, most = min(float(x.min()) for x in twists), max(float(x.max()) for x in twists)
+    step = next(s for s in (10.0, 30.0, 90.0, 180.0, 360.0) if most - least <= 4.0 * s or s == 360.0)
+    low = 0.0 if least > -0.1 * step else step * np.floor(least / step)
+    high = max(step, 1.05 * most)
+    axes = Axes((730.0, 506.0, 400.0, 280.0), (0.0, 1.0), (low, high))
+    ticks = [(y, f"${number(y, 0)}^{{\\circ}}$") for y in np.arange(low, high + 1e-6, step)]
+    records = axes.frame([(0.0, "root"), (1.0, "tip")], ticks)
+    for k, (way, twist) in enumerate(zip(ways, twists, strict=True)):
+        color, dash = ((style.ROUTE_1, None), (style.ROUTE_2, (12.0, 7.0)))[k]
+        text = (style.ROUTE_1_TEXT, style.ROUTE_2_TEXT)[k]
+        records.append(axes.curve(along, twist, color, dash=dash))
+        # Left of what rises, above what does not.
+        i = len(along) // 2 if twist[-1] > 0.5 * high else -4
+        at = axes.at(along[i], twist[i])
+        records.append(Label(WORDS[way.way.name], at, text, style.SMALL_TEXT, (-14.0, 14.0), "rb", room=60.0))
+    return records

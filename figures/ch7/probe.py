@@ -24,9 +24,10 @@ _OWN = ("shape", "probes", "probe", "poses")
             title="Probes at rest and moved",
             equations=("7.9",),
             caption=(
-                "Four probes (frames) are put into a duck. The one in the head turns, grows and is drawn "
-                "forward and up, the one in the tail turns and grows; the two in the body stay. Every vertex "
-                "is moved by the blend of the four motions, weighted by its distances to the probes."
+                "Four probes (frames) are put into a duck. The one in the head (2) turns by 70 degrees, "
+                "grows by 1.2 and is raised, the one in the tail (3) turns by 40 degrees and grows by 1.3; "
+                "the two in the body (1, 4) stay. Every vertex is moved by the blend of the four motions, "
+                "weighted by its distances to the probes."
             ),
         ),
         "B7.2": Plate(
@@ -36,17 +37,18 @@ _OWN = ("shape", "probes", "probe", "poses")
                 "The lower probe stays, the upper one turns and goes where it is when the line between both "
                 "is bent to an arc of equal length; the bar follows by the blend of both motions. At 120 "
                 "degrees it has 89 per cent of its volume by rotation vectors, and 52 by the linear blend of "
-                "the same matrices (below), which thins it."
+                "the same matrices (below), which thins it. Volumes are over that at rest."
             ),
             params={"example": "bend", "way": "phi-se", "beside": "linear"},
         ),
         "B7.4": Plate(
-            title="A vortex by a probe",
+            title="A vortex by probes",
             equations=("7.9", "K 9"),
             caption=(
-                "A disc of particles, coloured like the pieces of a cake, and a probe in its middle, which "
-                "turns by 450 degrees and sinks. The nearer a particle is to the probe, the further it is "
-                "taken down and around, by more than a full turn in the middle: a whirlpool with spiral arms."
+                "A disc of particles, coloured like the pieces of a cake, and two probes in its middle, one "
+                "above and one below. Both turn by 450 degrees and sink, the lower one further and about an "
+                "axis that leans. The nearer a particle is to the probes, the further it is taken down and "
+                "around, by more than a full turn in the middle: a whirlpool with spiral arms."
             ),
             params={"example": "vortex"},
         ),
@@ -68,7 +70,7 @@ _OWN = ("shape", "probes", "probe", "poses")
                 "A probe at the tip of an arm turns by 390 degrees about an axis a little off the arm's; the "
                 "weights rise along the arm from 0 to 1. By rotation vectors the arm swirls. A quaternion is "
                 "the same after a full turn but for its sign: what is left are 30 degrees, and the arm "
-                "hardly moves. Plotted is by how much each place along the arm has turned."
+                "hardly moves. Above at the right: by how much each place along the arm has turned."
             ),
             params={"example": "octopus"},
         ),
@@ -76,9 +78,9 @@ _OWN = ("shape", "probes", "probe", "poses")
             title="A mesh with several probes",
             equations=("M 5",),
             caption=(
-                "A cactus with a probe in its pot, which stays, one at the top, which turns by 110 degrees "
-                "about the vertical, and one in each arm, which leans outwards; one of these also grows. "
-                "Ribs, arms and flower follow."
+                "A cactus with a probe in its pot (1), which stays, one at the top (2), which turns by 110 "
+                "degrees about the vertical, and one in each arm (3, 4), which leans outwards; the fourth "
+                "also grows, by 1.25. Ribs, arms and flower follow."
             ),
             params={"example": "cactus"},
         ),
@@ -87,7 +89,7 @@ _OWN = ("shape", "probes", "probe", "poses")
             equations=("M 5",),
             caption=(
                 "The deformer moves points, and needs no mesh: a block of particles in coloured layers is "
-                "stirred by two probes, each turned by 430 degrees."
+                "stirred by two probes, turned by 430 degrees, one clockwise and one the other way."
             ),
             params={"example": "particles"},
         ),
@@ -176,11 +178,7 @@ def probe(
     stretch_weights: Annotated[str, Param("of the stretches, likewise: 'none' keeps sizes as they are")] = "",
     origin: Annotated[
         Literal["centre", "world"],
-        Param(
-            "what motions are expressed about: the probes' centres, or as printed the origin of the world",
-            # An axis through the origin is the same for both.
-            only=("example", "duck", "cactus", "bend", "strings", "octopus", "particles"),
-        ),
+        Param("what motions are expressed about: the probes' centres, or as printed the origin of the world"),
     ] = "centre",
     steps: Annotated[
         int,

@@ -18,9 +18,6 @@ Index = NDArray[np.intp]
 CREASE = np.radians(40.0)
 """Between faces that meet at a larger angle, radians, a surface has a sharp edge."""
 
-# Of a mesh's size, the shortest line of an outline.
-_SHORTEST = 0.03
-
 
 @dataclass(frozen=True, eq=False)
 class Edges:
@@ -110,8 +107,6 @@ def contour(V: ArrayLike, F: ArrayLike, camera: Camera) -> Array:
     """Return the edges between faces that a camera sees from in front and from behind, and the boundary.
 
     Where a surface is hollow along such an edge it hides the edge itself, so that this one is left out.
-    So is what hangs together for less than a part of the mesh's size: a dash that the eye cannot follow,
-    where a flat place is seen from the side and rounding decides which way a face looks.
 
     Parameters
     ----------
@@ -131,28 +126,10 @@ def contour(V: ArrayLike, F: ArrayLike, camera: Camera) -> Array:
     border = found.sides[:, 1] < 0
     # Few edges are left for what costs more.
     turns = np.flatnonzero(border | (front[found.sides[:, 0]] != front[found.sides[:, 1]]))
-    if not len(turns):
-        return np.zeros((0, 3))
-    ends, side = V[found.ends[turns]], found.sides[turns, 0]
-    bent = np.sum(N[side] * (V[found.opposite[turns, 1]] - ends[:, 0]), axis=1) < 0.0
-    seen = np.linalg.norm(np.cross(unit(ends[:, 0] - camera.eye), ends[:, 1] - ends[:, 0]), axis=1)
-    chain = chains(found.ends[turns])
-    long = np.bincount(chain, seen)[chain] > _SHORTEST * np.linalg.norm(np.ptp(V, axis=0))
-    ends = ends[border[turns] | (bent & long)]
+    side, tip, start = found.sides[turns, 0], found.opposite[turns, 1], found.ends[turns, 0]
+    bent = np.sum(N[side] * (V[tip] - V[start]), axis=1) < 0.0
+    ends = V[found.ends[turns[border[turns] | bent]]]
     return joined_pairs(ends[:, 0], ends[:, 1])
-
-
-def chains(ends: Index) -> Index:
-    """Return for edges (k, 2) of vertices which of them hang together; numbered by their least vertex."""
-    low = np.arange(int(ends.max(initial=-1)) + 1)
-    while True:
-        least = low[ends].min(axis=1)
-        before = low.copy()
-        np.minimum.at(low, ends.ravel(), np.repeat(least, 2))
-        # Each follows the one that it points to, so that long chains take few rounds.
-        low = low[low]
-        if (low == before).all():
-            return low[ends[:, 0]]
 
 
 def level_lines(V: ArrayLike, F: ArrayLike, values: ArrayLike, levels: ArrayLike) -> Array:

@@ -193,6 +193,7 @@ def turn(
     color: str = style.MARK,
     text: str | None = None,
     room: float = 60.0,
+    start: float = 0.0,
 ) -> list[Record]:
     """Return the arc of a turn with its head and its angle; more than a full turn is a spiral.
 
@@ -212,6 +213,8 @@ def turn(
         The angle in degrees unless given; "" for none.
     room : float
         How far the name may move.
+    start : float
+        Where the arc begins, radians onwards from where it is seen best.
     """
     center, x = np.asarray(center, float), np.asarray(x, float)
     angle = float(np.linalg.norm(x))
@@ -221,7 +224,7 @@ def turn(
     across = np.cross(camera.axes[2], u)
     v = mesh_lines.unit(across) if np.linalg.norm(across) > 1e-6 else solids.frame_along(u)[:, 0]
     along = np.linspace(0.0, angle, max(round(angle / 0.05), 2) + 1)
-    ring = np.cos(along)[:, None] * v + np.sin(along)[:, None] * np.cross(u, v)
+    ring = np.cos(start + along)[:, None] * v + np.sin(start + along)[:, None] * np.cross(u, v)
     turns = angle / (2.0 * np.pi)
     grown = max(_OPENING, _EACH_TURN * turns) if turns > 1.0 + 1e-9 else 0.0
     opening = radius * (1.0 + grown * along / angle)

@@ -106,12 +106,20 @@ class TestPlates:
         from lietool.mesh import particles
 
         P = particles.disc(18000, 12).points
-        r = np.linalg.norm(P, axis=1)
-        turned = np.radians(450.0) * np.clip(1.0 - r / 1.05, 0.0, None) ** 1.6
-        z = (P[:, 0] + 1j * P[:, 1]) * np.exp(1j * turned)
-        sunk = P[:, 2] - 1.1 * turned / np.radians(450.0)
-        assert np.allclose(mesh.vertices, np.stack([z.real, z.imag, sunk], 1), atol=1e-12)
-        assert turned.max() > 2.0 * np.pi and turned[r > 0.99].max() < 0.1
+        c, t = np.array([[0, 0, 0.25], [0, 0, -0.25]]), np.array([[0, 0, -0.9], [0, 0.2, -1.3]])
+        x = np.radians(450.0) * np.array([[0.0, 0.0, 1.0], np.array([0.0, 0.2, 1.0]) / np.sqrt(1.04)])
+        w = np.clip(1.0 - np.linalg.norm(P[:, None] - c, axis=2) / 1.05, 0.0, None) ** 2.5
+        total = w.sum(axis=1, keepdims=True)
+        about = w @ c / np.where(total > 0.0, total, 1.0)
+        w /= np.maximum(1.0, total)
+        moved = about + w @ t + Rotation.from_rotvec(w @ x).apply(P - about)
+        assert np.allclose(mesh.vertices, moved, atol=1e-12)
+        r, turned = np.linalg.norm(P[:, :2], axis=1), np.linalg.norm(w @ x, axis=1)
+        assert turned[r < 0.05].min() > 2.0 * np.pi and turned[r > 0.99].max() < 0.1
+
+    def test_the_vortex_has_probes_of_more_than_a_turn(self, plate):
+        turned = np.linalg.norm(plate("B7.4").numbers["rotation_vectors_degrees"], axis=1)
+        assert len(turned) == 2 and np.allclose(turned, 450.0)
 
 
 class TestWays:
