@@ -1,8 +1,13 @@
-"""One environment for all tests, what a missing renderer means, and every plate drawn once."""
+"""One environment for all tests, what a missing renderer means, and every plate drawn once.
+
+Where several processes share the tests (`./run test`), those of a file stay together, for the sake of what
+they have in common, and so do all tests of a command and its plates; the long ones go alone.
+"""
 
 import os
+import re
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, NoReturn
@@ -20,6 +25,8 @@ _REQUIRE = "LIETOOL_REQUIRE_RENDERER"
 _REQUIRE_BROWSER = "LIETOOL_REQUIRE_BROWSER"
 # What the caller set for other purposes: no test may pass or fail by it.
 _FOREIGN = ("GALLIUM_DRIVER", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH", "SOURCE_DATE_EPOCH")
+# Tests that take so long that each command's is one by itself.
+ALONE = ("TestFigures::", "TestAnimation::", "test_what_has_a_part_is_said")
 
 
 def pytest_configure() -> None:
@@ -31,10 +38,47 @@ def pytest_configure() -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Compiled shaders and labels of this session, shared by all the processes that tests start."""
+    """Compiled shaders and labels of this session, shared by all its processes and those that tests start."""
+    base = tmp_path_factory.getbasetemp()
+    # Each process that runs tests has a folder of its own in that of the session.
+    cache = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("LIETOOL_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("LIETOOL_CACHE_DIR", str(cache))
         yield
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Share tests among processes by `together`."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    if config.getvalue("dist") != "loadscope":
+        return None
+    commands = figure.plates((paths.FIGURES,))
+
+    class Scheduler(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return together(nodeid, commands)
+
+    return Scheduler(config, log)
+
+
+def together(nodeid: str, commands: Mapping[str, str]) -> str:
+    """Return the name of the tests that one process runs, so that what they have in common is made once.
+
+    Parameters
+    ----------
+    nodeid : str
+    commands : mapping of str to str
+        The command of each plate.
+    """
+    file, _, test = nodeid.partition("::")
+    case = re.search(r"\[(.*)\]$", test)
+    if file == "tests/test_figures.py" and case and case[1] in commands:
+        file = f"tests/figures/test_{commands[case[1]].replace('-', '_')}.py"
+    elif case and test.startswith(ALONE):
+        return nodeid
+    return file
 
 
 @pytest.hookimpl(wrapper=True)

@@ -33,7 +33,7 @@ def _rule(ours: str = "", others: str = "", lazily: str = "", ours_lazily: str =
 
 
 _BELOW = "paths atomic cache"
-_ALL = "bench gallery lie mesh interp deform render golden figure verbs lietool " + _BELOW
+_ALL = "bench gallery lie mesh interp deform render golden figure verbs mutation lietool " + _BELOW
 RULES = {
     "lietool": _rule(),
     "paths": _rule(),
@@ -53,8 +53,10 @@ RULES = {
     "deform": _rule("deform lie mesh", "numpy", "scipy skimage"),
     "bench": _rule("bench lie mesh interp deform", "numpy mpmath", "scipy pytransform3d"),
     "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib av"),
-    "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest"),
+    "golden": _rule("golden " + _BELOW, "numpy PIL", "skimage pytest jinja2 markupsafe"),
     "gallery": _rule("gallery " + _BELOW, "jinja2 markupsafe", "matplotlib"),
+    # It puts mistakes into what others import, and must not have imported that itself.
+    "mutation": _rule("mutation lietool render golden " + _BELOW, "numpy"),
     "verbs": _rule(_ALL, "click", "numpy PIL rich moderngl"),
     # Imported by a verb when it is called, so what it needs may stand at its top.
     "a part of a verb": _rule(_ALL, "click numpy", "PIL rich moderngl"),

@@ -167,13 +167,14 @@ class TestFigures:
     def test_the_ends_of_every_range(self, name, placed):
         loaded = figure.load(name, (paths.FIGURES,))
         complaints = {}
-        for params in sampled(loaded):
+        # Plates of a command meet where one differs from another in a single parameter.
+        for params in {repr(params): params for params in sampled(loaded)}.values():
             if complaint := sketch(loaded, placed, **params):
                 complaints[json.dumps(params)] = complaint
         for complaint in complaints.values():
             assert "\n" not in complaint and "; got " in complaint, complaint
         # Parameters may exclude each other here and there, but not as a rule.
-        assert len(complaints) <= 3, complaints
+        assert len(complaints) <= max(3, len(loaded.plates)), complaints
 
 
 MOVING = [name for name in NAMES if figure.declare(name, (paths.FIGURES,)).time]

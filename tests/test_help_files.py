@@ -35,8 +35,8 @@ def mesh(tmp_path: Path) -> Path:
     return path
 
 
-def test_the_files_of_probe(tmp_path: Path) -> None:
-    probes, poses = files("probe")
+def test_the_files_of_probe(tmp_path: Path, mesh: Path) -> None:
+    probes, poses, weighed = files("probe")
     (tmp_path / "p.toml").write_text(probes)
     (tmp_path / "anim.toml").write_text(poses)
     read = probe_io.read(tmp_path / "p.toml")
@@ -45,6 +45,14 @@ def test_the_files_of_probe(tmp_path: Path) -> None:
     assert read.turns == pytest.approx(np.array([[0, 0, 0], [0, 0, 1]]))
     sequence = probe_io.read_poses(tmp_path / "anim.toml", read)
     assert sequence.fps == 24.0 and sequence.frames.shape == (2, 2, 4, 4)
+    (tmp_path / "w.toml").write_text(weighed)
+    words = ["probe", str(mesh), "--probes", str(tmp_path / "w.toml"), "--json"]
+    result = CliRunner().invoke(command, words)
+    # Of its six tetrahedra three have a probe.
+    assert result.exit_code == 2 and "with 3 such parts, that of vertex 4 and 2 more" in result.output
+    (tmp_path / "w.toml").write_text(weighed.replace('"harmonic"', '"harmonic"\nloose = "follow"'))
+    result = CliRunner().invoke(command, words)
+    assert result.exit_code == 0, result.output
 
 
 def test_the_file_of_poisson(tmp_path: Path, mesh: Path) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -171,8 +171,9 @@ class Way:
         }
 
 
+@lru_cache(maxsize=16)
 def way(pair: Shape, choice: Choice) -> Way:
-    """Return the interpolation that the parameters ask for."""
+    """Return the interpolation that the parameters ask for; of a film, the same for every frame."""
     start = seed_triangle(pair, choice.seed)
     maps = shape.local_maps(pair.source, pair.target, pair.faces)
     theta = local_angles(pair, choice, maps)

@@ -167,8 +167,9 @@ def empty(points: Array, box: tuple[float, float, float, float]) -> tuple[tuple[
     cells = np.unique(np.round(points / _GRID), axis=0) * _GRID
     far = np.full(len(spots), np.inf)
     for some in np.array_split(cells, max(len(cells) // 200, 1)):
-        gap = ((spots[:, None] - some[None]) ** 2).sum(axis=-1).min(axis=1)
-        far = np.minimum(far, np.sqrt(gap))
+        # Written out, for a sum over two columns takes many times as long.
+        gap = (spots[:, None, 0] - some[:, 0]) ** 2 + (spots[:, None, 1] - some[:, 1]) ** 2
+        far = np.minimum(far, np.sqrt(gap.min(axis=1)))
     free = np.minimum(far, room)
     best = int(np.argmax(free))
     return (float(spots[best, 0]), float(spots[best, 1])), float(free[best])

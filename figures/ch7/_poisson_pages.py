@@ -15,8 +15,8 @@ from lietool.render.plot import Axes, number
 from lietool.render.scene import Label, Lines, Picture, Record, View
 from lietool.render.theme import Mix
 
+from ._close import framed, within
 from ._poisson_case import WAYS, Case, Measured, guided, turned
-from ._poisson_close import framed, within
 from ._probe_pages import WORDS as NAMES
 
 Array = NDArray[np.float64]

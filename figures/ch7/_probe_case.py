@@ -1,7 +1,7 @@
 """A shape with its probes, the weights at its points, and where it is at a time."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -10,61 +10,23 @@ from numpy.typing import NDArray
 from lietool.deform import move, orientation, probe, turns, ways, weights
 from lietool.deform.probe_io import Poses, Probes
 from lietool.lie import polar, so3
-from lietool.mesh import geodesic, surface
 from lietool.mesh.surface import Mesh
 
 from ._probe_look import Look
+from ._probe_weights import PARTS, weigh
+from ._probe_weights import Recipe as Recipe
 
 Array = NDArray[np.float64]
 
 WAYS = {name.replace("_", "-"): way for name, way in ways.WAYS.items()}
-_SUMS = {
-    "unity": weights.partition_of_unity,
-    "softmax": weights.softmax,
-    "capped": weights.capped,
-    "none": weights.unnormalised,
-}
-
-
-@dataclass(frozen=True)
-class Recipe:
-    """How weights come from distances; `reach` in the units of the shape."""
-
-    kind: str = "inverse-distance"
-    power: float = 2.0
-    reach: float = 1.0
-    sum: str = "auto"
-    distance: str = "straight"
-
-    @property
-    def of_sum(self) -> str:
-        """What is done to their sum: what ends somewhere lacks of 1 what belongs to the identity."""
-        if self.sum != "auto":
-            return self.sum
-        return "unity" if self.kind == "inverse-distance" else "capped"
-
-    @property
-    def words(self) -> str:
-        """How the weights are made, for a legend."""
-        r = "r_i" if self.distance == "straight" else r"r_i\,(\mathrm{along\ the\ surface})"
-        raised = "" if self.power == 1.0 else f"^{{{self.power:g}}}"
-        formula = {
-            "inverse-distance": f"1/{r}{raised}",
-            "cutoff": rf"(1-{r}/{self.reach:.3g})_+{raised}",
-            "gaussian": rf"\exp(-\frac{{1}}{{2}}({r}/{self.reach:.3g})^2)",
-        }[self.kind]
-        after = {
-            "unity": ", divided by their sum",
-            "softmax": ", by softmax",
-            "capped": ", at most 1 together",
-            "none": "",
-        }[self.of_sum]
-        return f"weights ${formula}${after}"
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A shape and its probes, as they are when nothing is said of how to blend."""
+    """A shape and its probes, as they are when nothing is said of how to blend.
+
+    `parts` are recipes for those of `PARTS` whose weights are others than the rest's.
+    """
 
     name: str
     mesh: Mesh
@@ -73,66 +35,42 @@ class Case:
     recipe: Recipe
     painted: Array | None = None
     poses: Poses | None = None
+    parts: Mapping[str, Recipe] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     @cached_property
-    def weights(self) -> Array:
+    def recipes(self) -> tuple[Recipe, ...]:
+        """Those of `PARTS`; one and the same of those which have none of their own."""
+        base = self.recipe if self.painted is None else Recipe("painted", values=self.painted)
+        return tuple(self.parts.get(part, base) for part in PARTS)
+
+    @cached_property
+    def weights(self) -> Array | weights.Weights:
         """The weights (n, k)."""
-        if self.painted is not None:
-            return self.painted
-        return weigh(self.mesh, self.probes.rest[:, :3, 3], self.recipe)
+        recipes = self.recipes
+        made: list[Array] = []
+        for k, recipe in enumerate(recipes):
+            first = next(j for j in range(k + 1) if recipes[j] is recipe)
+            made.append(made[first] if first < k else weigh(self.mesh, self.probes, recipe))
+        return weights.separate(*made) if self.parts else made[0]
 
     @property
     def said(self) -> str:
         """How the weights are made."""
-        return "painted weights" if self.painted is not None else self.recipe.words
+        if not self.parts:
+            return self.recipes[0].words
+        each = [f"of {part} {recipe.short}" for part, recipe in zip(PARTS, self.recipes, strict=True)]
+        return f"weights {', '.join(each)}"
 
-
-def weigh(mesh: Mesh, centres: Array, recipe: Recipe) -> Array:
-    """Return weights (n, k) of probes with centres (k, 3) at the vertices of a mesh."""
-    V = mesh.vertices
-    r = _along(mesh, centres) if recipe.distance == "surface" else weights.distances(V, centres)
-    if recipe.kind == "inverse-distance":
-        w = weights.inverse_distance(r, recipe.power)
-    elif recipe.kind == "cutoff":
-        w = weights.cutoff(r, recipe.reach, recipe.power)
-    else:
-        w = weights.gaussian(r, recipe.reach)
-    return normalised(w, recipe.of_sum)
-
-
-def normalised(w: Array, total: str) -> Array:
-    """Return weights (n, k) with their sums made what is wanted."""
-    lost = np.sum(w, axis=1) == 0.0
-    if total == "unity" and np.any(lost):
-        raise ValueError(
-            f"sum must be capped where weights are all 0; got unity with {int(lost.sum())} such points of "
-            f"{len(w)}, first {int(np.argmax(lost))}. Write --sum capped, or let weights reach farther"
-        )
-    return _SUMS[total](w)
-
-
-def _along(mesh: Mesh, centres: Array) -> Array:
-    """Distances along the surface from the vertices nearest to centres."""
-    if not len(mesh.faces):
-        raise ValueError(
-            "distance must be straight for a cloud; got surface, which it has none of. Leave it out"
-        )
-    flat = surface.health(mesh.vertices, mesh.faces).flat
-    if len(flat):
-        raise ValueError(
-            f"distance must be straight where faces have no area; got surface, with none in {_first(flat)}. "
-            "Remove them, or leave it out"
-        )
-    used = np.unique(mesh.faces)
-    near = used[np.argmin(weights.distances(mesh.vertices[used], centres), axis=0)]
-    found = geodesic.solve(geodesic.prepare(mesh.vertices, mesh.faces), list(near[:, None]))
-    # Rounding may leave a distance a little below 0.
-    return np.maximum(found, 0.0)
-
-
-def _first(faces: NDArray[np.intp]) -> str:
-    more = f" and {len(faces) - 4} more" if len(faces) > 4 else ""
-    return f"face {', '.join(map(str, faces[:4]))}{more}"
+    def moving(self, way: str, origin: str, inside_out: str, name: str = "way") -> "Moving":
+        """Return it under a way of blending, which the parameter of a name has given."""
+        if self.parts and WAYS[way].parts is None:
+            apart = [key for key, each in WAYS.items() if each.parts is not None]
+            raise ValueError(
+                f"{name} must be {' or '.join(apart)} where rotation, translation or stretch has weights of "
+                f"its own; got {way}. Write one of these"
+            )
+        return Moving(self, WAYS[way], origin == "world", orientation.POLICIES[inside_out])
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,11 +85,12 @@ class Moment:
 
 @dataclass(frozen=True, eq=False)
 class Moving:
-    """A case under one way of blending."""
+    """A case under one way of blending, and what is done with probes that turn space inside out."""
 
     case: Case
     way: ways.Way
     world: bool
+    policy: orientation.Policy = orientation.refuse
 
     @cached_property
     def _prepared(self) -> probe.Prepared:
@@ -170,7 +109,7 @@ class Moving:
         case, track = self.case, self.track
         if track is not None:
             return np.stack([pose.params for pose in track.poses])
-        pose = _pose(self._centred, case.probes)
+        pose = _pose(self._centred, case.probes, self.policy)
         return np.stack([np.zeros_like(pose.params), pose.params])
 
     @cached_property
@@ -180,15 +119,21 @@ class Moving:
         if poses is None:
             return None
         for frames, whole in zip(poses.frames, poses.turns, strict=True):
-            _check(case.probes.names, probe.motions(self._centred, frames), whole)
-        return probe.follow(self._centred, poses.frames, poses.turns, poses.stated)
+            _check(case.probes.names, probe.motions(self._centred, frames), whole, self.policy)
+        return probe.follow(self._centred, poses.frames, poses.turns, poses.stated, self.policy)
+
+    @property
+    def _current(self) -> Array:
+        """The frames (f, k, 4, 4) that are gone through."""
+        case = self.case
+        return case.probes.current[None] if case.poses is None else case.poses.frames
 
     @cached_property
     def _straight(self) -> bool:
         """Whether a probe turns space inside out, which only the linear way can take."""
-        if self.way is not ways.LINEAR:
+        if self.way is not ways.LINEAR or self.policy is orientation.nearest:
             return False
-        current = self.case.probes.current[None] if self.case.poses is None else self.case.poses.frames
+        current = self._current
         d = np.linalg.det(current[..., :3, :3]) / np.linalg.det(self.case.probes.rest[:, :3, :3])
         return bool(np.any(d < 1e-9))
 
@@ -244,7 +189,20 @@ class Moving:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is to be told of a sequence: steps so long that it is not known which way they go."""
+        """What is to be told: steps so long that it is not known which way they go, and what was replaced."""
+        return (*self.case.notes, *self._replaced, *self._long)
+
+    @property
+    def _replaced(self) -> tuple[str, ...]:
+        if self.policy is not orientation.nearest:
+            return ()
+        replaced = self.policy(probe.motions(self._centred, self._current)).replaced
+        names = [self.case.probes.names[k] for k in np.unique(np.nonzero(replaced)[1])]
+        what = "the nearest motion that does neither takes its place"
+        return tuple(f"probe {name} turns space inside out or flattens it; {what}" for name in names)
+
+    @property
+    def _long(self) -> tuple[str, ...]:
         if self.track is None or self.case.poses is None:
             return ()
         return tuple(
@@ -272,17 +230,18 @@ def _hull(points: Array) -> Array:
     return points[np.unique(np.argmax(points @ directions.T, axis=0))]
 
 
-def _pose(centred: probe.Prepared, probes: Probes) -> move.Pose:
+def _pose(centred: probe.Prepared, probes: Probes, policy: orientation.Policy) -> move.Pose:
     B = probe.motions(centred, probes.current)
-    _check(probes.names, B, probes.turns)
-    return probe.pose(centred, probes.current, ways.PHI_SO, probes.turns)[0]
+    _check(probes.names, B, probes.turns, policy)
+    return probe.pose(centred, probes.current, ways.PHI_SO, probes.turns, policy)[0]
 
 
-def _check(names: Sequence[str], B: Array, whole: Array) -> None:
+def _check(names: Sequence[str], B: Array, whole: Array, policy: orientation.Policy) -> None:
     """Refuse by their names the probes whose motions no way can take."""
-    for name, motion, n in zip(names, B, whole, strict=True):
+    for name, given, n in zip(names, B, whole, strict=True):
+        motion = given
         try:
-            orientation.refuse(motion)
+            motion = policy(given).A
         except ValueError:
             d = np.linalg.svd(motion[:3, :3], compute_uv=False)
             inside_out = np.linalg.det(motion[:3, :3]) < 0.0

@@ -122,7 +122,7 @@ def _duck() -> tuple[Mesh, Look, Recipe, None]:
         (1.0, -1.2, 0.35),
         0.55,
         (style.GREYS[1], style.BEFORE),
-        (style.MARK, style.AFTER),
+        (style.BETWEEN_EDGE, style.AFTER),
         beak,
         eyes=_eyes(s),
         eye=s.eye,
@@ -140,7 +140,7 @@ def _cactus() -> tuple[Mesh, Look, Recipe, None]:
         (style.GREYS[1], style.GREYS[2], style.BEFORE),
         (style.BETWEEN_EDGE, style.ROUTE_2, style.SHELLS[2]),
         parts,
-        edges=(style.BEFORE_EDGE, style.INK),
+        edges=(style.BEFORE_EDGE, style.SHELLS_TEXT[2]),
     )
     return _mesh(s), look, Recipe(power=2.0), None
 
@@ -183,9 +183,9 @@ def _octopus() -> tuple[Mesh, Look, Recipe, Array]:
 
 def _vortex() -> tuple[Mesh, Look, Recipe, None]:
     cloud = particles.disc(18000, 12)
-    tones = (style.AXIS_Z, style.SHELLS[1], style.SHELLS[0])
+    tones = (style.AXIS_Z, style.RAMP[1], style.SHELLS[0])
     return _cloud(
-        cloud, tones, Look((1.0, 0.0, 0.62), 0.3, dots=3.2, margin=1.04), Recipe("cutoff", 1.6, 1.05)
+        cloud, tones, Look((1.0, 0.0, 0.84), 0.3, dots=3.2, margin=0.99), Recipe("cutoff", 1.6, 1.05)
     )
 
 
@@ -193,16 +193,19 @@ def _particles() -> tuple[Mesh, Look, Recipe, None]:
     cloud = particles.block(16000, 8)
     tones = (
         style.BETWEEN,
-        style.ARC,
-        style.AXIS_X,
-        style.ROUTE_2,
         style.AXIS_Z,
-        style.SHELLS[0],
-        style.AXIS_Y,
+        style.ARC,
         style.ROUTE_1,
+        style.SHELLS[0],
+        style.AXIS_X,
+        style.AXIS_Y,
+        style.ROUTE_2,
     )
     return _cloud(
-        cloud, tones, Look((0.25, -1.0, 0.2), 0.35, dots=3.4, margin=1.06), Recipe("cutoff", 2.0, 0.9)
+        cloud,
+        tones,
+        Look((0.25, -1.0, 0.2), 0.35, dots=3.4, margin=1.06, lens=4.0),
+        Recipe("cutoff", 2.0, 0.9),
     )
 
 

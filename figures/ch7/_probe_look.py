@@ -69,7 +69,8 @@ def by_part(F: Index, function: Array, part: Index, count: int) -> Patches:
 class Look:
     """How a shape is shown.
 
-    `before` and `after` are the colours of its patches, or of a cloud its points'; `eyes` are vertices.
+    `before` and `after` are the colours of its patches, or of a cloud its points'; `eyes` are vertices;
+    `lens` is its angle of view in degrees, if not the usual one.
     """
 
     direction: Direction
@@ -84,6 +85,7 @@ class Look:
     stands: bool = True
     y_up: bool = False
     margin: float = 1.10
+    lens: float | None = None
 
     def turned(self, around: float, above: float) -> "Look":
         """Return the same, seen from elsewhere: degrees round the shape and upwards."""

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lietool.deform import painted, probe_io
+from lietool.deform import probe_io
 from lietool.deform.probe_io import Probes
 from lietool.mesh import cloud_io, surface_io, topology
 from lietool.render import style
 
-from ._probe_case import Case, Recipe, normalised
+from ._probe_case import Case, Recipe
 from ._probe_look import Look
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ def shape(path: Path, turn: float) -> Case:
     """Return a user's shape with two probes at the ends of its longest side, the second turned."""
     mesh = cloud_io.read(path) if cloud_io.is_cloud(path) else surface_io.read(path)
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    size = _size(mesh.vertices)
+    size = half_diagonal(mesh.vertices)
     if not size > 1.0 / topology.LARGEST:
         got = "all its points at one place" if low.tolist() == high.tolist() else f"{size:.3g}"
         raise ValueError(
@@ -45,7 +45,7 @@ def shape(path: Path, turn: float) -> Case:
     return Case("own", mesh, _two(low, high, turn), look, Recipe())
 
 
-def _size(V: Array) -> float:
+def half_diagonal(V: Array) -> float:
     """Half the diagonal of the box."""
     return 0.5 * math.hypot(*np.ptp(V, axis=0).tolist())
 
@@ -94,7 +94,7 @@ def poses(case: Case, file: Path | None) -> Case:
 def _within(case: Case, names: Sequence[str], rest: Array, now: Array) -> None:
     """Refuse probes, at rest (k, 4, 4) or now (f, k, 4, 4), that are beyond measure beside the shape."""
     V = case.mesh.vertices
-    size = _size(V)
+    size = half_diagonal(V)
     off = np.concatenate([rest[None], now])[..., :3, 3] - 0.5 * (V.min(axis=0) + V.max(axis=0))
     far = np.linalg.norm(off, axis=-1).max(axis=0) / size
     stretch = np.linalg.norm((now @ np.linalg.inv(rest))[..., :3, :3], 2, axis=(-2, -1)).max(axis=0)
@@ -108,21 +108,3 @@ def _within(case: Case, names: Sequence[str], rest: Array, now: Array) -> None:
             raise ValueError(
                 f"probe {name} must stretch by at most {_FARTHEST:g}; got {factor:.3g}. Write a smaller scale"
             )
-
-
-def weighted(case: Case, paint: Path | None, recipe: Recipe | None) -> Case:
-    """Return a case with weights that are painted, or made by a recipe, its reach in sizes of the shape."""
-    V, names = case.mesh.vertices, case.probes.names
-    if recipe is not None:
-        if paint is not None:
-            raise ValueError(f"weights must be auto where they are painted; got {recipe.kind}. Leave it out")
-        return replace(case, painted=None, recipe=replace(recipe, reach=recipe.reach * _size(V)))
-    if paint is None:
-        return case
-    values = painted.read(paint, len(V))
-    if values.shape[1] != len(names):
-        raise ValueError(
-            f"paint must be weights of {len(names)} probes, {', '.join(names)}; got {values.shape[1]} in "
-            f"{paint}. Add or leave out columns"
-        )
-    return replace(case, painted=normalised(values, "capped"))

@@ -6,14 +6,16 @@ from typing import Annotated, Literal
 
 from lietool.figure import Drawing, Param, Plate, Time, figure
 
+from . import _probe_arm as arm
 from . import _probe_examples as example_
 from . import _probe_own as own
 from . import _probe_pages as pages
-from ._probe_case import WAYS, Moving, Recipe
+from . import _probe_recipes as recipes
+from ._probe_case import Recipe
+from ._probe_weights import DISTANCES, SMOOTH
 
 # What makes a case one's own, on a page of its own.
 _OWN = ("shape", "probes", "probe", "poses")
-_KINDS = ("inverse-distance", "cutoff", "gaussian")
 
 
 @figure(
@@ -118,12 +120,15 @@ def probe(
         Param("turned by so much more than the example says: its main probe", "deg", -360.0, 720.0),
     ] = 0.0,
     weights: Annotated[
-        Literal["auto", "inverse-distance", "cutoff", "gaussian"],
-        Param("of the probes at a point, by its distance to them; auto is the example's own, or 1/r^2"),
+        Literal["auto", "inverse-distance", "cutoff", "gaussian", "harmonic", "biharmonic"],
+        Param(
+            "of the probes at a point, by its distance to them, or as smooth as the surface allows between "
+            "the vertices they hold; auto is the example's own, that of the file of probes, or 1/r^2"
+        ),
     ] = "auto",
     power: Annotated[
         float,
-        Param("of the distance in the weights", low=0.25, high=8.0, only=("weights", *_KINDS[:2])),
+        Param("of the distance in the weights", low=0.25, high=8.0, only=("weights", *DISTANCES[:2])),
     ] = 2.0,
     reach: Annotated[
         float,
@@ -131,20 +136,44 @@ def probe(
             "where a cutoff ends, or the width of a Gaussian, over half the diagonal of the shape's box",
             low=0.02,
             high=4.0,
-            only=("weights", *_KINDS[1:]),
+            only=("weights", *DISTANCES[1:]),
         ),
-    ] = 0.5,
+    ] = recipes.REACH,
     sum: Annotated[
         Literal["auto", "unity", "softmax", "capped", "none"],
         Param(
             "of the weights at a point: made 1, or by softmax, or at most 1; auto: 1 where all weights count",
-            only=("weights", *_KINDS),
+            only=("weights", *DISTANCES),
         ),
     ] = "auto",
     distance: Annotated[
         Literal["straight", "surface"],
-        Param("straight, or along the surface", only=("weights", *_KINDS)),
+        Param("straight, or along the surface", only=("weights", *DISTANCES)),
     ] = "straight",
+    hold: Annotated[
+        float,
+        Param(
+            "how much farther than its nearest vertex a probe holds others, over half the diagonal of the "
+            "shape's box",
+            low=0.0,
+            high=2.0,
+            only=("weights", *SMOOTH),
+        ),
+    ] = recipes.HOLD,
+    loose: Annotated[
+        Literal["refuse", "follow"],
+        Param(
+            "parts of the shape in which no probe holds a vertex are refused, or follow the nearest with one",
+            only=("weights", *SMOOTH),
+            needs="shape",
+        ),
+    ] = "refuse",
+    rotation_weights: Annotated[
+        str,
+        Param("of the rotations, in words, where they are others: 'gaussian reach=0.3', 'harmonic', 'none'"),
+    ] = "",
+    translation_weights: Annotated[str, Param("of the translations, likewise")] = "",
+    stretch_weights: Annotated[str, Param("of the stretches, likewise: 'none' keeps sizes as they are")] = "",
     origin: Annotated[
         Literal["centre", "world"],
         Param(
@@ -175,6 +204,13 @@ def probe(
         Path | None,
         Param("a sequence of poses of the probes, in a file .toml or .json, which t goes through"),
     ] = None,
+    inside_out: Annotated[
+        Literal["raise", "nearest"],
+        Param(
+            "probes whose matrices reflect or flatten are refused, or moved by the nearest that do neither",
+            needs="probes",
+        ),
+    ] = "raise",
     paint: Annotated[
         Path | None,
         Param(
@@ -218,21 +254,44 @@ def probe(
         head = { axis = [0, 0, 1], degrees = 400 }
 
     As .json: {"probe": [{"name": "foot", "centre": [0, 0, 0]}, ...]}.
+
+    Harmonic weights are 1 at the vertices a probe holds, and 0 at those of others:
+    these about it, see --hold, or those in its table handle, by vertices, ball, box
+    or attribute as in the file of poisson. Rotation, translation and stretch may
+    have weights of their own, by --way phi-so, phi-se or polar-quaternion. A file
+    of probes may say all that, each kind with the words of its options; reach and
+    hold are in the units of the shape there::
+
+        [weights]
+        kind = "harmonic"
+        rotation = { kind = "cutoff", reach = 1.5, power = 3 }
+        stretch = { kind = "none" }
+
+        [[probe]]
+        centre = [0, 0, 0]
+
+        [[probe]]
+        centre = [0, 0, 2]
+        handle = { ball = { centre = [0, 0, 2], radius = 0.3 } }
+        current = { axis = [0, 0, 1], degrees = 90, scale = 1.5 }
+
+    Painted ones are kind = "painted", file = "w.csv", a column for each probe.
     """
     case = example_.example(example, turn) if shape is None else own.shape(shape, turn)
     case = own.poses(own.probes(case, probes, probe, turn), poses)
-    recipe = None if weights == "auto" else Recipe(weights, power, reach, sum, distance)
-    case = own.weighted(case, paint, recipe)
+    recipe = None if weights == "auto" else Recipe(weights, power, reach, sum, distance, hold, loose)
+    words = (rotation_weights, translation_weights, stretch_weights)
+    case = recipes.weighted(case, recipe, paint, words, own.half_diagonal(case.mesh.vertices))
     case = replace(case, look=replace(case.look.turned(around, above), y_up=up == "y"))
-    moving = Moving(case, WAYS[way], origin == "world")
-    other = None if beside == "none" else Moving(case, WAYS[beside], origin == "world")
+    moving = case.moving(way, origin, inside_out)
+    other = None if beside == "none" else case.moving(beside, origin, inside_out, "beside")
     match case.name:
         case "bend":
             drawing = pages.row(moving, other, t, steps)
         case "strings":
             drawing = pages.columns(moving, other, t, steps)
         case "octopus":
-            drawing = pages.compare(moving, other, t)
+            drawing = arm.page(moving, other, t)
         case _:
             drawing = pages.pair(moving, t)
     fps = 24.0 if case.poses is None else case.poses.fps

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lietool.lie import polar
+from lietool.deform import arap_kernels
 from lietool.mesh import laplacian, solve, surface, topology
 
 Array = NDArray[np.float64]
@@ -30,11 +30,12 @@ class Prepared:
     Parameters
     ----------
     faces : ndarray of int, shape (m, 3)
-    area : ndarray, shape (m,)
-    tangent : ndarray, shape (m, 3, 3)
-        The projection to the plane of each face.
-    gradient, divergence, around : sparse array
-        `around` (n, m) has a 1 where a vertex belongs to a face.
+    frame : ndarray, shape (m, 6)
+        Two orthonormal vectors in the plane of each face, times the root of its area.
+    slopes : sparse array, shape (2 m, n)
+        `slopes @ x` is to what the map of each face takes these.
+    sums : sparse array, shape (3 n, n)
+        `sums @ x` are the maps of the faces at each vertex, transposed, times area and added.
     factor : Factor
     pinned : ndarray of int
     part : ndarray of int, shape (n,)
@@ -45,11 +46,9 @@ class Prepared:
     """
 
     faces: Index
-    area: Array
-    tangent: Array
-    gradient: Any
-    divergence: Any
-    around: Any
+    frame: Array
+    slopes: Any
+    sums: Any
     factor: solve.Factor
     pinned: Index
     part: Index
@@ -95,10 +94,8 @@ def prepare(V: ArrayLike, F: ArrayLike, pinned: ArrayLike) -> Prepared:
     ValueError
         If V or F is none, a triangle has area 0, or pinned has no vertices or one twice.
     """
-    from scipy.sparse import csr_array
-
     V, F = laplacian.checked("arap.prepare", V, F)
-    n, m = len(V), len(F)
+    n = len(V)
     pins = topology.distinct(
         "arap.prepare", "pinned", topology.vertex_set("arap.prepare", "pinned", pinned, n)
     )
@@ -110,21 +107,34 @@ def prepare(V: ArrayLike, F: ArrayLike, pinned: ArrayLike) -> Prepared:
     used = np.bincount(F.ravel(), minlength=n) > 0
     # One vertex of each loose part is held for the solver; the part is moved to its barycentre afterwards.
     fixed = np.union1d(np.union1d(pins, np.flatnonzero(~used)), first[loose >= 0])
-    normal = surface.face_normals(V, F)
-    around = csr_array((np.ones(3 * m), (F.ravel(), np.repeat(np.arange(m), 3))), (n, m))
+    frame, slopes, sums = _operators(V, F)
     return Prepared(
         F,
-        surface.areas(V, F),
-        np.eye(3) - normal[:, :, None] * normal[:, None, :],
-        laplacian.gradient(V, F),
-        laplacian.divergence(V, F),
-        around,
+        frame,
+        slopes,
+        sums,
         solve.factor(laplacian.cotangent(V, F), fixed),
         pins,
         part,
         laplacian.mass(V, F),
         float(np.linalg.norm(np.ptp(V, axis=0))),
     )
+
+
+def _operators(V: Array, F: Index) -> tuple[Array, Any, Any]:
+    """Return `frame`, `slopes` and `sums` of a mesh at rest."""
+    from scipy.sparse import csr_array, eye_array, kron
+
+    n, m = len(V), len(F)
+    G, area = laplacian.gradient(V, F), surface.areas(V, F)
+    u = V[F[:, 1]] - V[F[:, 0]]
+    u /= np.linalg.norm(u, axis=1, keepdims=True)
+    frame = np.stack([u, np.cross(surface.face_normals(V, F), u)], axis=1) * np.sqrt(area)[:, None, None]
+    steep = (frame @ G.data.reshape(m, 3, 3)).ravel()
+    slopes = csr_array((steep, np.repeat(F, 2, axis=0).ravel(), np.arange(0, 6 * m + 1, 3)), (2 * m, n))
+    around = csr_array((np.repeat(area, 3), (F.ravel(), np.repeat(np.arange(m), 3))), (n, m))
+    sums = csr_array(kron(around, eye_array(3), format="csr") @ G)
+    return np.asarray(frame.reshape(m, 6), np.float64), slopes, sums
 
 
 def polish(prepared: Prepared, vertices: ArrayLike, rounds: int = 10) -> Polished:
@@ -155,51 +165,27 @@ def polish(prepared: Prepared, vertices: ArrayLike, rounds: int = 10) -> Polishe
         topology.fail("arap.polish", "rounds", "a whole number, at least 1", repr(rounds))
     centre = _centres(prepared, x)
     energy, before = [], x
+    q = np.repeat(np.eye(4)[:, :1], len(x), axis=1)
     for _ in range(rounds):
-        before, J = x, _maps(prepared, x)
-        R = _rotations(prepared, J)
+        before = x
+        R, q = arap_kernels.rotations((prepared.sums @ x).reshape(-1, 9), q)
         if not energy:
-            energy.append(_energy(prepared, J, R))
+            energy.append(_energy(prepared, x, R))
         x = _global(prepared, R, x, centre)
-        J = _maps(prepared, x)
-        energy.append(_energy(prepared, J, R))
+        energy.append(_energy(prepared, x, R))
     residual = float(np.max(np.linalg.norm(x - before, axis=1))) / prepared.size
     return Polished(x, np.array(energy), residual)
 
 
-def _maps(prepared: Prepared, x: Array) -> Array:
-    """Return the maps (m, 3, 3) of the faces, of their planes at rest to space."""
-    return (prepared.gradient @ x).reshape(-1, 3, 3).transpose(0, 2, 1)
-
-
-def _rotations(prepared: Prepared, J: Array) -> Array:
-    """Return the rotation (n, 3, 3) at each vertex nearest to the maps of its faces.
-
-    Not checked for det > 0: of a reflection the polar decomposition takes the rotation nearest to it, which
-    is what makes the energy least.
-    """
-    S = prepared.around @ (prepared.area[:, None, None] * J).reshape(-1, 9)
-    S = S.reshape(-1, 3, 3)
-    R = polar.rotation(S, check=False)
-    # Faces crushed to a line or a point, or none at all: many rotations are as near, and polar finds none.
-    loss = np.max(np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)), axis=(1, 2))
-    if (crushed := ~(loss <= 1e-9)).any():
-        U, _, W = np.linalg.svd(S[crushed])
-        U[:, :, 2] *= np.linalg.det(U @ W)[:, None]
-        R[crushed] = U @ W
-    return R
-
-
-def _energy(prepared: Prepared, J: Array, R: Array) -> float:
-    apart = J[:, None] - R[prepared.faces] @ prepared.tangent[:, None]
-    return float(np.sum(prepared.area * np.einsum("fkij,fkij->f", apart, apart)) / 3.0)
+def _energy(prepared: Prepared, x: Array, R: Array) -> float:
+    J = (prepared.slopes @ x).reshape(-1, 6)
+    return arap_kernels.energy(prepared.faces, prepared.frame, J, R)
 
 
 def _global(prepared: Prepared, R: Array, x: Array, centre: Array) -> Array:
-    """Return the best vertices for given rotations."""
-    mean = (prepared.around.T @ R.reshape(-1, 9)).reshape(-1, 3, 3) / 3.0
-    field = (mean @ prepared.tangent).transpose(0, 2, 1).reshape(-1, 3)
-    found = prepared.factor.solve(-(prepared.divergence @ field), x[prepared.factor.fixed])
+    """Return the best vertices for given rotations (n, 9), transposed."""
+    right = prepared.sums.T @ R.reshape(-1, 3) / 3.0
+    found = prepared.factor.solve(right, x[prepared.factor.fixed])
     loose = prepared.part >= 0
     if loose.any():
         found[loose] += (centre - _centres(prepared, found))[prepared.part[loose]]

@@ -126,6 +126,12 @@ def _dot(a: Array, b: Array) -> Array:
     return np.einsum("...i,...i->...", a, b)
 
 
+def _cross(a: Array, b: Array) -> Array:
+    """Return a x b (p, 3); NumPy's own spends its time on axes when there are but few."""
+    (x, y, z), (u, v, w) = a.T, b.T
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
+
+
 def crossings(V: Array, F: Index, ends: Index) -> Index:
     """Return the pairs (edge, face) of which the edge passes through the face's interior.
 
@@ -158,10 +164,10 @@ def _through(E: Array, T: Array) -> NDArray[np.bool_]:
     """Whether segments E (p, 2, 3) pass through triangles T (p, 3, 3), by the signs of five volumes."""
     a, b = E[:, :1] - T, E[:, 1:] - T
     size = np.max(np.abs(np.concatenate([a, b], axis=1)), axis=(1, 2)) ** 3
-    normal = np.cross(T[:, 1] - T[:, 0], T[:, 2] - T[:, 0])
+    normal = _cross(T[:, 1] - T[:, 0], T[:, 2] - T[:, 0])
     above, below = _dot(a[:, 0], normal), _dot(b[:, 0], normal)
     # The line from E0 to E1 sees the three edges turn one way round.
-    side = np.stack([_dot(b[:, 0] - a[:, 0], np.cross(a[:, i], a[:, (i + 1) % 3])) for i in range(3)], axis=1)
+    side = np.stack([_dot(b[:, 0] - a[:, 0], _cross(a[:, i], a[:, (i + 1) % 3])) for i in range(3)], axis=1)
     clear = 1e-13 * size
     split = (np.minimum(above, below) < -clear) & (np.maximum(above, below) > clear)
     return split & ((side > clear[:, None]).all(axis=1) | (side < -clear[:, None]).all(axis=1))

@@ -179,7 +179,8 @@ def _offset(samples: Array, margin: float, cell: float) -> tuple[Array, Index]:
         V, F = _level(tree, samples, reach, cell)
         # The distance from the samples changes along a face by no more than one goes along it.
         middles, step = _middles(V, F, 4)
-        if float(np.min(tree.query(middles)[0])) - step > margin:
+        near = tree.query(middles, distance_upper_bound=margin + 2.0 * step)[0]
+        if float(np.min(near)) - step > margin:
             return V, F
         reach += 0.25 * cell
 
@@ -192,7 +193,10 @@ def _level(tree, samples: Array, reach: float, cell: float) -> tuple[Array, Inde
     low = samples.min(axis=0) - reach - 2.0 * cell
     count = np.ceil((samples.max(axis=0) + reach + 2.0 * cell - low) / cell).astype(int) + 1
     grid = np.stack(np.meshgrid(*(np.arange(n) for n in count), indexing="ij"), axis=-1)
-    value = tree.query(low + cell * grid.reshape(-1, 3))[0].reshape(count) - reach
+    # The level passes no cube of which a corner is farther than its diagonal; how far is of no account.
+    far = reach + 2.0 * cell
+    distance = tree.query(low + cell * grid.reshape(-1, 3), distance_upper_bound=far)[0]
+    value = np.minimum(distance, far).reshape(count) - reach
     parts = np.zeros(value.shape, np.int32)
     ndimage.label(value > 0.0, output=parts)
     hollow = (value > 0.0) & (parts != parts[0, 0, 0])

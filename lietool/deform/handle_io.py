@@ -112,6 +112,29 @@ def read(path: str | Path, mesh: Mesh) -> Handles:
     return Handles(free, tuple(names), tuple(vertices), np.array(centres), np.array(A), np.array(turns))
 
 
+def chosen(entry: Table, mesh: Mesh) -> Index:
+    """Return the vertices that a table of `vertices`, `ball`, `box` and `attribute` says, and nothing else.
+
+    Parameters
+    ----------
+    entry : Table
+    mesh : Mesh
+        Whose vertices they are.
+
+    Returns
+    -------
+    vertices : (m,), int
+        In increasing order, one at least.
+
+    Raises
+    ------
+    ValueError
+        If something in it is wrong: with the key.
+    """
+    entry.only(_PLACES)
+    return np.flatnonzero(_chosen(entry, mesh))
+
+
 def _chosen(entry: Table, mesh: Mesh) -> Mask:
     """Which vertices (n,) a pin or handle has."""
     V = mesh.vertices

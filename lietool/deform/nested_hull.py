@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lietool.deform import cage_checks
+from lietool.lie.blocks import Rows
 from lietool.mesh import topology
 
 Array = NDArray[np.float64]
@@ -166,7 +167,8 @@ def _best(corner: Array, weight: Array, ends: Array, slack: float) -> tuple[Arra
     b = b - np.einsum("eki,ei->ek", n, lowest)
     z = _candidates(G, b)
     with np.errstate(invalid="ignore"):
-        clear = (np.einsum("eci,eki->eck", z, G) - b[:, None] >= -slack).all(axis=-1)
+        # Planes before candidates: `all` is quick along any axis but the last.
+        clear = (G @ np.swapaxes(z, 1, 2) - b[:, :, None] >= -slack).all(axis=1)
         square = np.where(clear, np.einsum("eci,eci->ec", z, z), np.inf)
     pick = np.argmin(square, axis=1)
     row = np.arange(len(z))
@@ -180,18 +182,34 @@ def _best(corner: Array, weight: Array, ends: Array, slack: float) -> tuple[Arra
 
 def _candidates(G: Array, b: Array) -> Array:
     """Return the points nearest to 0 on all intersections of up to three planes G z = b, (e, c, 3)."""
+    g = (G[..., 0], G[..., 1], G[..., 2])
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        one = G * (b / np.einsum("eki,eki->ek", G, G))[..., None]
-        p, q = G[:, _PAIRS[:, 0]], G[:, _PAIRS[:, 1]]
-        bp, bq = b[:, _PAIRS[:, 0], None], b[:, _PAIRS[:, 1], None]
-        across = _cross(p, q)
-        two = (bp * _cross(q, across) + bq * _cross(across, p)) / np.sum(across**2, -1, keepdims=True)
-        p, q, r = (G[:, _TRIPLES[:, i]] for i in range(3))
-        bp, bq, br = (b[:, _TRIPLES[:, i], None] for i in range(3))
-        qr = _cross(q, r)
-        three = (bp * qr + bq * _cross(r, p) + br * _cross(p, q)) / np.sum(p * qr, -1, keepdims=True)
-    every = np.concatenate([np.zeros_like(G[:, :1]), one, two, three], axis=1)
+        share = b / np.einsum("eki,eki->ek", G, G)
+        one = [x * share for x in g]
+        (p, bp), (q, bq) = _taken(g, b, _PAIRS[:, 0]), _taken(g, b, _PAIRS[:, 1])
+        across = _cross_rows(p, q)
+        size = across[0] ** 2 + across[1] ** 2 + across[2] ** 2
+        pairs = zip(_cross_rows(q, across), _cross_rows(across, p), strict=True)
+        two = [(bp * x + bq * y) / size for x, y in pairs]
+        (p, bp), (q, bq), (r, br) = (_taken(g, b, _TRIPLES[:, i]) for i in range(3))
+        qr = _cross_rows(q, r)
+        size = p[0] * qr[0] + p[1] * qr[1] + p[2] * qr[2]
+        triples = zip(qr, _cross_rows(r, p), _cross_rows(p, q), strict=True)
+        three = [(bp * x + bq * y + br * z) / size for x, y, z in triples]
+    zero = np.zeros_like(b[:, :1])
+    every = np.stack(
+        [np.concatenate([zero, *rows], axis=1) for rows in zip(one, two, three, strict=True)], -1
+    )
     return np.where(np.isfinite(every), every, np.nan)
+
+
+def _taken(g: Rows, b: Array, index: Index) -> tuple[Rows, Array]:
+    return [x[:, index] for x in g], b[:, index]
+
+
+def _cross_rows(a: Rows, b: Rows) -> Rows:
+    (x, y, z), (u, v, w) = a, b
+    return [y * w - z * v, z * u - x * w, x * v - y * u]
 
 
 def _allowed(surface: _Surface, edge: Edge, point: Array) -> bool:
@@ -230,9 +248,11 @@ def _quality(T: Array) -> Array:
 def _crosses(surface: _Surface, edge: Edge, F: Index, new: Array, point: Array) -> bool:
     """Whether the new fan would cross the rest of the surface."""
     low, high = new.min(axis=(0, 1)), new.max(axis=(0, 1))
-    corners = surface.points[surface.faces]
-    near = ((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)
-    near &= surface.faces[:, 0] >= 0
+    near = surface.faces[:, 0] >= 0
+    for axis in range(3):
+        x, y, z = (surface.points[surface.faces[:, k], axis] for k in range(3))
+        near &= np.minimum(np.minimum(x, y), z) <= high[axis]
+        near &= np.maximum(np.maximum(x, y), z) >= low[axis]
     near[list(surface.around[edge[0]] | surface.around[edge[1]])] = False
     if not near.any():
         return False

@@ -42,6 +42,16 @@ in the pose before, first as in the file of probes::
 
 Motions in words state how far they turn, 400 degrees, and not 40; matrices do
 not, and are followed from pose to pose.
+
+A file of probes may also say which vertices of a mesh a probe holds, as
+`handle_io` does, and, in a table that is handed on as it is, how it is weighed::
+
+    [[probe]]
+    centre = [0, 0, 2]
+    handle = { ball = { centre = [0, 0, 2], radius = 0.3 } }
+
+    [weights]
+    kind = "harmonic"
 """
 
 import json
@@ -59,18 +69,24 @@ from lietool.mesh.files import BROKEN, Place, read_text
 
 Array = NDArray[np.float64]
 
-_REST = ("name", "centre", "rotation", "frame", "current")
+_REST = ("name", "centre", "rotation", "frame", "handle", "current")
 
 
 @dataclass(frozen=True)
 class Probes:
-    """Probes: names, frames (k, 4, 4) at rest and now, and whole turns (k, 3) that `probe.solve` takes."""
+    """Probes: names, frames (k, 4, 4) at rest and now, and whole turns (k, 3) that `probe.solve` takes.
+
+    What takes a mesh to be understood is handed on: the `handles` of the probes, for `handle_io.chosen`,
+    None where a probe has none; and the table of `weights`, if there is one.
+    """
 
     names: tuple[str, ...]
     rest: Array
     current: Array
     turns: Array
     stated: NDArray[np.bool_]
+    handles: tuple[Table | None, ...] = ()
+    weights: Table | None = None
 
 
 @dataclass(frozen=True)
@@ -233,15 +249,21 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _probes(top: Table) -> Probes:
-    top.only(("probe",))
+    top.only(("probe", "weights"))
     names: list[str] = []
-    rows = []
+    rows, handles = [], []
     for entry in named(top, "probe", "a file of probes, with at least one [[probe]]", names):
         rest = _rest(entry)
         motion = entry.table("current", entry.data.get("current", {}), f"{entry.label}, current")
         rows.append((rest, *probe_motion.read(motion, rest)))
+        handles.append(_table(entry, "handle", f"{entry.label}, handle"))
     rest, current, turns, stated = (np.array([row[j] for row in rows]) for j in range(4))
-    return Probes(tuple(names), rest, current, turns, stated)
+    weights = _table(top, "weights", "weights")
+    return Probes(tuple(names), rest, current, turns, stated, tuple(handles), weights)
+
+
+def _table(entry: Table, key: str, label: str) -> Table | None:
+    return entry.table(key, entry.data[key], label) if key in entry.data else None
 
 
 def _rest(entry: Table) -> Array:

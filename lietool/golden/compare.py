@@ -5,6 +5,11 @@ of pixels beyond a colour distance catches anything small and strong: a moved
 edge, a missing dot, a changed letter.  The 9x9 mean of the *signed* difference
 catches anything wide and weak, a surface three levels too light, while the
 noise of antialiasing, which has no sign of its own, cancels in it.
+
+Pixels beyond the colour distance are counted where they crowd.  Another
+processor rounds a corner of a mesh otherwise in its last bit, and one sample of
+one pixel falls on the other side of an edge: such pixels are strewn over the
+picture, the more of them the finer the mesh, while a mistake leaves them side by side.
 """
 
 from dataclasses import dataclass
@@ -12,6 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 PIXELS = 8
+# Pixels so near to each other, each way, are in one place; and so many may be strewn over all places.
+NEAR, STREWN = 16, 48
 DELTA_E = 2.0
 LOWPASS = 1.5
 BOX = 9
@@ -29,6 +36,8 @@ _PIECE = 8192
 class Comparison:
     """What the comparison of two pictures found; lengths in pixels, positions (x, y) from the upper left.
 
+    `over` counts pixels beyond the colour distance, `crowd` those of them
+    that are in one place, 33x33 pixels around one of them.
     `lowpass` is the 9x9 mean of actual minus expected that is largest in
     magnitude, with its sign, and `channel` the channel where it was found.
     Positions are None where nothing differs.
@@ -38,6 +47,8 @@ class Comparison:
     actual_size: tuple[int, int]
     differing: int = 0
     over: int = 0
+    crowd: int = 0
+    crowd_at: tuple[int, int] | None = None
     largest_delta_e: float = 0.0
     largest_delta_e_at: tuple[int, int] | None = None
     lowpass: float = 0.0
@@ -46,6 +57,7 @@ class Comparison:
     too_far: bool = False
     too_wide: bool = False
     pixels_limit: int = PIXELS
+    strewn_limit: int = STREWN
     delta_e_limit: float = DELTA_E
     lowpass_limit: float = LOWPASS
 
@@ -65,9 +77,17 @@ class Comparison:
         return self.same_size and not self.too_far and not self.too_wide
 
     @property
+    def beyond(self) -> str:
+        """How many pixels exceed the colour distance and how many may, in words."""
+        return (
+            f"{self.over} px beyond dE {self.delta_e_limit:g} ({self.strewn_limit} allowed),"
+            f" {self.crowd} of them in one place ({self.pixels_limit} allowed)"
+        )
+
+    @property
     def headroom_pixels(self) -> int:
-        """How many more pixels might exceed the colour distance; negative when it failed."""
-        return self.pixels_limit - self.over
+        """How many more pixels might exceed the colour distance in one place; negative when it failed."""
+        return min(self.pixels_limit - self.crowd, self.strewn_limit - self.over)
 
     @property
     def headroom_lowpass(self) -> float:
@@ -90,7 +110,8 @@ def images(
     expected, actual : (h, w, 3) uint8
         sRGB pictures; different sizes are a verdict, not an error.
     pixels : int
-        How many pixels may lie beyond `delta_e`.
+        How many pixels may lie beyond `delta_e` in one place; in all they may be `STREWN`, or as many
+        as this if that is more.
     delta_e : float
         Colour distance dE76 (CIELAB over D65) that a pixel may reach.
     lowpass : float
@@ -109,14 +130,21 @@ def images(
     _check("expected", expected)
     _check("actual", actual)
     sizes = (_size(expected), _size(actual))
-    limits = {"pixels_limit": pixels, "delta_e_limit": delta_e, "lowpass_limit": lowpass}
+    limits = {
+        "pixels_limit": pixels,
+        "strewn_limit": max(STREWN, pixels),
+        "delta_e_limit": delta_e,
+        "lowpass_limit": lowpass,
+    }
     if sizes[0] != sizes[1] or _same_bytes(expected, actual):
         return Comparison(*sizes, **limits)
 
     rows, columns = np.nonzero(differing(expected, actual))
     far = delta_e76(expected[rows, columns], actual[rows, columns])
     worst = int(far.argmax())
-    over = int(np.count_nonzero(far > delta_e))
+    beyond = far > delta_e
+    over = int(np.count_nonzero(beyond))
+    crowd, crowd_at = _crowd(columns[beyond], rows[beyond], expected.shape)
     # Beyond four pixels from the last differing one every mean is zero; the frame keeps the edges reflected.
     part = _around(rows, columns, expected.shape)
     sums = box_sums(np.subtract(actual[part], expected[part], dtype=np.int16))
@@ -126,12 +154,14 @@ def images(
         *sizes,
         differing=rows.size,
         over=over,
+        crowd=crowd,
+        crowd_at=crowd_at,
         largest_delta_e=float(far[worst]),
         largest_delta_e_at=(int(columns[worst]), int(rows[worst])),
         lowpass=largest / BOX**2,
         lowpass_at=(int(x) + part[1].start, int(y) + part[0].start),
         lowpass_channel="RGB"[channel],
-        too_far=over > pixels,
+        too_far=crowd > pixels or over > limits["strewn_limit"],
         # On the sums, which are whole numbers: a mean of exactly the limit is still within it.
         too_wide=abs(largest) > lowpass * BOX**2,
         **limits,
@@ -202,6 +232,25 @@ def box_sums(difference: np.ndarray) -> np.ndarray:
     two = rows[:, :-1] + rows[:, 1:]
     four = two[:, :-2] + two[:, 2:]
     return four[:, :-5] + four[:, 4:-1] + rows[:, 8:]
+
+
+def _crowd(x: np.ndarray, y: np.ndarray, shape: tuple[int, ...]) -> tuple[int, tuple[int, int] | None]:
+    """The most pixels in one place, and around which; of equal places the upper left."""
+    if not x.size:
+        return 0, None
+    if x.size <= 4 * STREWN:
+        near = (np.abs(x - x[:, None]) <= NEAR) & (np.abs(y - y[:, None]) <= NEAR)
+        count = near.sum(axis=1)
+    else:
+        # Sums over all pixels above and to the left; a place's is what is between its corners.
+        marks = np.zeros((shape[0] + 1, shape[1] + 1), np.int32)
+        marks[y + 1, x + 1] = 1
+        sums = marks.cumsum(axis=0, out=marks).cumsum(axis=1, out=marks)
+        top, left = np.maximum(y - NEAR, 0), np.maximum(x - NEAR, 0)
+        bottom, right = np.minimum(y + NEAR + 1, shape[0]), np.minimum(x + NEAR + 1, shape[1])
+        count = sums[bottom, right] - sums[top, right] - sums[bottom, left] + sums[top, left]
+    most = int(count.argmax())
+    return int(count[most]), (int(x[most]), int(y[most]))
 
 
 def _lab(colour: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

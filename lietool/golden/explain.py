@@ -18,6 +18,8 @@ _GAIN = 16
 # Differing pixels so near to each other are one blob.
 _REACH = 6
 _MOST = 8
+# Of the map of similarity: its colours, and the root of 1 - SSIM below which it is clear.
+_MILD, _STRONG, _UNSEEN = (250.0, 204.0, 90.0), (150.0, 10.0, 40.0), 0.05
 _PARTS = ("expected", "actual", "difference")
 
 
@@ -85,6 +87,35 @@ def amplified(expected: np.ndarray, actual: np.ndarray) -> np.ndarray:
     return np.clip(ghost + _GAIN * (actual.astype(float) - expected), 0, 255).round().astype(np.uint8)
 
 
+def similarity_png(expected: np.ndarray, actual: np.ndarray) -> bytes:
+    """Draw where two pictures are alike: clear where SSIM is 1, a warm colour over what is unlike.
+
+    Parameters
+    ----------
+    expected, actual : (h, w, 3) uint8
+        Pictures of one size.
+
+    Returns
+    -------
+    bytes
+        PNG with a palette whose colour and opacity follow 1 - SSIM, which runs from 0 to 2.
+    """
+    import io
+
+    from PIL import Image
+
+    # SSIM falls to half at a trace that nobody sees; the root keeps what is slight apart from what is not there.
+    unlike = np.sqrt(np.clip(1.0 - _similarity(expected, actual), 0.0, 1.0))
+    picture = Image.fromarray((unlike * 255).round().astype(np.uint8), "L").convert("P")
+    ramp = np.linspace(0.0, 1.0, 256)[:, None]
+    colours = np.array(_MILD) * (1 - ramp) + np.array(_STRONG) * ramp
+    picture.putpalette(colours.round().astype(np.uint8).tobytes())
+    alpha = np.where(ramp[:, 0] < _UNSEEN, 0.0, 70 + 185 * ramp[:, 0]).round().astype(np.uint8)
+    file = io.BytesIO()
+    picture.save(file, "PNG", transparency=alpha.tobytes())
+    return file.getvalue()
+
+
 def lines(expected: np.ndarray, actual: np.ndarray, found: compare.Comparison) -> list[str]:
     """Explain a comparison that failed, in lines for a reader.
 
@@ -101,8 +132,7 @@ def lines(expected: np.ndarray, actual: np.ndarray, found: compare.Comparison) -
         The verdict's numbers, then the blobs.
     """
     said = [
-        f"{found.over} px beyond dE {found.delta_e_limit:g} (allowed {found.pixels_limit}), "
-        f"largest {found.largest_delta_e:.1f} at {found.largest_delta_e_at}",
+        f"{found.beyond}, largest {found.largest_delta_e:.1f} at {found.largest_delta_e_at}",
         f"9x9 mean {found.lowpass:+.2f} levels of {found.lowpass_channel} (allowed {found.lowpass_limit:g})"
         f" at {found.lowpass_at}",
     ]
@@ -140,7 +170,7 @@ def leave(folder: Path, plate: str, **pictures: np.ndarray | None) -> list[Path]
         if picture is None:
             path.unlink(missing_ok=True)
         else:
-            atomic.write_bytes(path, _png(picture))
+            atomic.write_bytes(path, png(picture))
             written.append(path)
     return written
 
@@ -160,7 +190,19 @@ def _similarity(expected: np.ndarray, actual: np.ndarray) -> np.ndarray:
     return structural_similarity(*greys, data_range=255, full=True)[1][3:-3, 3:-3]
 
 
-def _png(picture: np.ndarray) -> bytes:
+def png(picture: np.ndarray) -> bytes:
+    """Write a picture as PNG.
+
+    Parameters
+    ----------
+    picture : (h, w, 3) or (h, w) uint8
+        sRGB or grey.
+
+    Returns
+    -------
+    bytes
+        The file.
+    """
     import io
 
     from PIL import Image

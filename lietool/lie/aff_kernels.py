@@ -52,7 +52,8 @@ def _halved(L: Rows) -> tuple[Rows, NDArray[np.int_]]:
     for i in (3, 6):
         size = np.maximum(size, np.abs(L[i]) + np.abs(L[i + 1]) + np.abs(L[i + 2]))
     steps = np.maximum(np.frexp(size)[1], 0)
-    return [np.ldexp(x, -steps) for x in L], steps
+    f = np.ldexp(1.0, -steps)
+    return [x * f for x in L], steps
 
 
 def _series(M: Rows) -> tuple[Sequence[Array], Sequence[Array]]:
@@ -62,8 +63,14 @@ def _series(M: Rows) -> tuple[Sequence[Array], Sequence[Array]]:
     """
     s1, s2, s3 = _invariants(M)
     x, y, z = np.full_like(s1, _MEAN[-1]), np.zeros_like(s1), np.zeros_like(s1)
+    held = np.empty_like(s1)
     for c in reversed(_MEAN[:-1]):
-        x, y, z = s3 * z + c, x - s2 * z, y + s1 * z
+        # In place: of new arrays the memory takes as long as the sums.
+        y += np.multiply(s1, z, out=held)
+        x -= np.multiply(s2, z, out=held)
+        z *= s3
+        z += c
+        x, y, z = z, x, y
     return (s3 * z + 1.0, x - s2 * z, y + s1 * z), (x, y, z)
 
 
@@ -87,7 +94,8 @@ def exp(X: Rows) -> Rows:
     M2 = _square(M)
     of_exp, of_mean = _series(M)
     E, J = _quadratic(of_exp, M, M2), _quadratic(of_mean, M, M2)
-    t = [np.ldexp(X[i], -steps) for i in (3, 7, 11)]
+    f = np.ldexp(1.0, -steps)
+    t = [X[i] * f for i in (3, 7, 11)]
     t = [J[i] * t[0] + J[i + 1] * t[1] + J[i + 2] * t[2] for i in (0, 3, 6)]
     while np.any(on := steps > 0):
         twice = [E[3 * i] * t[0] + E[3 * i + 1] * t[1] + E[3 * i + 2] * t[2] + t[i] for i in range(3)]

@@ -101,17 +101,17 @@ def _(record: Surface, lens: Lens) -> list[Batch]:
     if record.material not in MATERIALS:
         known = ", ".join(MATERIALS)
         raise ValueError(f"draw.render: Surface.material must be one of {known}; got {record.material!r}")
-    corners = vertices[faces]
+    corners = vertices.take(faces, axis=0)
     if record.normals is None:
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         length = np.linalg.norm(normals, axis=-1, keepdims=True)
         normals = np.repeat((normals / np.where(length > 0, length, 1.0))[:, None], 3, axis=1)
     else:
-        normals = np.asarray(record.normals, float)[faces]
-    color = lens.theme.rgba(record.color, len(vertices), record.alpha)[faces]
+        normals = np.asarray(record.normals, float).take(faces, axis=0)
+    color = lens.theme.rgba(record.color, len(vertices), record.alpha).take(faces, axis=0)
     material = np.full((*faces.shape, 1), MATERIALS[record.material])
     data = np.concatenate([corners, normals, color, material], axis=-1).astype("f4")
-    depth = lens.depth(corners.mean(axis=1))
+    depth = lens.depth((corners[:, 0] + corners[:, 1] + corners[:, 2]) / 3.0)
     if record.material == "glass":
         return _walls(data, corners, normals, depth, lens)
     if record.material == "shadow":
@@ -148,12 +148,9 @@ def _(record: Lines, lens: Lens) -> list[Batch]:
     if record.dash:
         points, color = dashed(points, color, record.dash, lens)
     lift = record.lift * lens.camera.height
-    rows = [_segments(points[s], color[s], half_width, lift) for s in runs(points)]
-    rows = [r for r in rows if len(r)]
-    if not rows:
-        return []
-    data = np.concatenate(rows)
-    return [Batch("lines", data.astype("f4"), lens.depth((data[:, 3:6] + data[:, 6:9]) / 2.0) - lift)]
+    data = _segments(points, color, half_width, lift)
+    depth = lens.depth((data[:, 3:6] + data[:, 6:9]) / 2.0) - lift
+    return [Batch("lines", data.astype("f4"), depth)] if len(data) else []
 
 
 @batches.register
@@ -269,11 +266,17 @@ def runs(points: np.ndarray) -> list[slice]:
 
 
 def _segments(points: np.ndarray, color: np.ndarray, half_width: float, lift: float) -> np.ndarray:
-    closed = len(points) > 2 and np.array_equal(points[0], points[-1])
-    before = np.concatenate([points[-2:-1] if closed else points[:1], points[:-2]])
-    after = np.concatenate([points[2:], points[1:2] if closed else points[-1:]])
-    rest = np.tile([half_width, lift], (len(points) - 1, 1))
-    return np.concatenate([before, points[:-1], points[1:], after, color[:-1], color[1:], rest], axis=-1)
+    """The segments of all polylines, each with the points before and after it; shape (n, 22)."""
+    first, last = np.array([(s.start, s.stop - 1) for s in runs(points)], int).reshape(-1, 2).T
+    count = last - first
+    closed = (count > 1) & (points[first] == points[last]).all(axis=1)
+    # Of each segment where it starts, and of its polyline where that begins and ends.
+    at = np.arange(count.sum()) + np.repeat(first - (np.cumsum(count) - count), count)
+    head, tail, ring = (np.repeat(of, count) for of in (first, last, closed))
+    before = np.where(at > head, at - 1, np.where(ring, tail - 1, head))
+    after = np.where(at + 1 < tail, at + 2, np.where(ring, head + 1, tail))
+    parts = [points[before], points[at], points[at + 1], points[after], color[at], color[at + 1]]
+    return np.concatenate([*parts, np.broadcast_to([half_width, lift], (len(at), 2))], axis=-1)
 
 
 def whole_strokes(dash: tuple[float, float], length: float) -> tuple[int, float]:
@@ -313,15 +316,15 @@ def dashed(
         if length[-1] == 0.0:
             continue
         count, scale = whole_strokes(dash, float(length[-1]))
-        for i in range(count):
-            first = i * (stroke + gap) * scale
-            last = first + stroke * scale
-            inside = length[(length > first) & (length < last)]
-            at = np.concatenate([[first], inside, [last], [np.nan]])
-            scaled = np.interp(at, length, weight)
-            for source, out in ((points[s], out_points), (color[s], out_color)):
-                columns = [np.interp(at, length, column * weight) / scaled for column in source.T]
-                out.append(np.stack(columns, axis=-1))
+        first = np.arange(count) * (stroke + gap) * scale
+        last = first + stroke * scale
+        low, high = np.searchsorted(length, first, "right"), np.searchsorted(length, last)
+        ends = zip(first, low, high, last, strict=True)
+        at = np.concatenate([part for a, i, j, b in ends for part in ([a], length[i:j], [b, np.nan])])
+        scaled = np.interp(at, length, weight)
+        for source, out in ((points[s], out_points), (color[s], out_color)):
+            columns = [np.interp(at, length, column * weight) / scaled for column in source.T]
+            out.append(np.stack(columns, axis=-1))
     if not out_points:
         return points[:0], color[:0]
     return np.concatenate(out_points), np.concatenate(out_color)

@@ -5,6 +5,7 @@ renderer leaves out what the mesh hides.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,9 @@ Index = NDArray[np.intp]
 
 CREASE = np.radians(40.0)
 """Between faces that meet at a larger angle, radians, a surface has a sharp edge."""
+
+# Of a mesh's size, the shortest line of an outline.
+_SHORTEST = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +42,13 @@ class Edges:
 
 def edges(F: ArrayLike) -> Edges:
     """Return the edges of faces (m, 3), each once."""
-    F = np.asarray(F, np.intp).reshape(-1, 3)
+    return _edges(np.asarray(F, np.intp).tobytes())
+
+
+# One mesh is drawn in many poses, and in every frame of a film.
+@lru_cache(maxsize=16)
+def _edges(faces: bytes) -> Edges:
+    F = np.frombuffer(faces, np.intp).reshape(-1, 3)
     if not len(F):
         none = np.zeros((0, 2), np.intp)
         return Edges(none, none, none)
@@ -51,7 +61,10 @@ def edges(F: ArrayLike) -> Edges:
     pair = np.stack([order[first], order[np.minimum(first + 1, len(order) - 1)]], axis=1)
     inside = np.stack([np.ones(len(first), bool), count > 1], axis=1)
     sides = np.where(inside, pair // 3, -1)
-    return Edges(half[order[first]], sides, np.where(inside, tip[pair], -1))
+    found = Edges(half[order[first]], sides, np.where(inside, tip[pair], -1))
+    for array in (found.ends, found.sides, found.opposite):
+        array.setflags(write=False)
+    return found
 
 
 def face_normals(V: ArrayLike, F: ArrayLike) -> Array:
@@ -97,6 +110,8 @@ def contour(V: ArrayLike, F: ArrayLike, camera: Camera) -> Array:
     """Return the edges between faces that a camera sees from in front and from behind, and the boundary.
 
     Where a surface is hollow along such an edge it hides the edge itself, so that this one is left out.
+    So is what hangs together for less than a part of the mesh's size: a dash that the eye cannot follow,
+    where a flat place is seen from the side and rounding decides which way a face looks.
 
     Parameters
     ----------
@@ -111,11 +126,33 @@ def contour(V: ArrayLike, F: ArrayLike, camera: Camera) -> Array:
     V, F = np.asarray(V, float), np.asarray(F, np.intp)
     found = edges(F)
     N = face_normals(V, F)
-    front = np.sum(N * (camera.eye - V[F].mean(axis=1)), axis=1) > 0.0
+    middle = (V[F[:, 0]] + V[F[:, 1]] + V[F[:, 2]]) / 3.0
+    front = np.sum(N * (camera.eye - middle), axis=1) > 0.0
     border = found.sides[:, 1] < 0
-    bent = np.sum(N[found.sides[:, 0]] * (V[found.opposite[:, 1]] - V[found.ends[:, 0]]), axis=1) < 0.0
-    ends = V[found.ends[border | ((front[found.sides[:, 0]] != front[found.sides[:, 1]]) & bent)]]
+    # Few edges are left for what costs more.
+    turns = np.flatnonzero(border | (front[found.sides[:, 0]] != front[found.sides[:, 1]]))
+    if not len(turns):
+        return np.zeros((0, 3))
+    ends, side = V[found.ends[turns]], found.sides[turns, 0]
+    bent = np.sum(N[side] * (V[found.opposite[turns, 1]] - ends[:, 0]), axis=1) < 0.0
+    seen = np.linalg.norm(np.cross(unit(ends[:, 0] - camera.eye), ends[:, 1] - ends[:, 0]), axis=1)
+    chain = chains(found.ends[turns])
+    long = np.bincount(chain, seen)[chain] > _SHORTEST * np.linalg.norm(np.ptp(V, axis=0))
+    ends = ends[border[turns] | (bent & long)]
     return joined_pairs(ends[:, 0], ends[:, 1])
+
+
+def chains(ends: Index) -> Index:
+    """Return for edges (k, 2) of vertices which of them hang together; numbered by their least vertex."""
+    low = np.arange(int(ends.max(initial=-1)) + 1)
+    while True:
+        least = low[ends].min(axis=1)
+        before = low.copy()
+        np.minimum.at(low, ends.ravel(), np.repeat(least, 2))
+        # Each follows the one that it points to, so that long chains take few rounds.
+        low = low[low]
+        if (low == before).all():
+            return low[ends[:, 0]]
 
 
 def level_lines(V: ArrayLike, F: ArrayLike, values: ArrayLike, levels: ArrayLike) -> Array:

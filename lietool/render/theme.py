@@ -32,6 +32,10 @@ class Tone(str):
         made.values = MappingProxyType({"book": book, "dark": dark, "print": print})
         return made
 
+    def __reduce__(self) -> tuple[type["Tone"], tuple[str, ...]]:
+        """Let a picture travel to another process, or be copied, with the colours of all themes."""
+        return Tone, tuple(self.values.values())
+
 
 @dataclass(frozen=True, eq=False)
 class Mix:

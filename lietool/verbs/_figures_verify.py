@@ -185,7 +185,8 @@ def _headroom(found: verdict.Verdict) -> str:
     if c is None or c.equal:
         return ""
     return (
-        f"  {c.differing} px differ, {c.over} of {c.pixels_limit} beyond dE {c.delta_e_limit:g};"
+        f"  {c.differing} px differ, {c.over} of {c.strewn_limit} beyond dE {c.delta_e_limit:g},"
+        f" {c.crowd} of {c.pixels_limit} in one place;"
         f" 9x9 mean {abs(c.lowpass):.2f} of {c.lowpass_limit:g}"
     )
 

@@ -189,6 +189,72 @@ def gallery(ids: tuple[str, ...], folder: Path, golden: bool, readme: bool, jobs
     click.echo("\n".join(map(str, changed)) or "nothing has changed")
 
 
+@command.command()
+@_IDS
+@click.option("--quick", is_flag=True, help="Only the settings farthest from each other.")
+@_JOBS
+@_JSON
+@click.pass_context
+def noise(context: click.Context, ids: tuple[str, ...], quick: bool, jobs: int, as_json: bool) -> None:
+    """Draw in every harmless way; none may fail.
+
+    Backends OSMesa and EGL, 0 to 7 threads, processors with and without SSE4.1
+    and AVX, vectors of 128 and 256 bits, numpy and its BLAS as on other
+    processors, and each picture again with a jitter of one grey level.  Prints
+    the largest deviation from the golden against the tolerance.
+    Ends with 5 if anything fails that should not.
+    """
+    from lietool.verbs import _figures_noise
+
+    context.exit(_figures_noise.run(_studio.items(ids), as_json, quick=quick, jobs=jobs))
+
+
+@command.command()
+@click.argument("names", nargs=-1, metavar="[NAMES]...")
+@click.option("--plate", "ids", metavar="ID", multiple=True, help="Try them on this only; may be repeated.")
+@click.option("--list", "listing", is_flag=True, help="List the catalogue and try nothing.")
+@click.option("--quick", is_flag=True, help="A sample, within 50 seconds.")
+@click.option("--seed", metavar="N", type=click.IntRange(0), default=0, help="Of the sample.")
+@click.option("--fresh", is_flag=True, help="Use nothing that earlier runs have found.")
+@click.option("--every", is_flag=True, help="Also plates that are left out where many others notice.")
+@click.option("--record", is_flag=True, help="Keep what a whole run finds with the catalogues.")
+@_JOBS
+@_JSON
+@click.pass_context
+def mutants(
+    context: click.Context,
+    names: tuple[str, ...],
+    ids: tuple[str, ...],
+    listing: bool,
+    quick: bool,
+    seed: int,
+    fresh: bool,
+    every: bool,
+    record: bool,
+    jobs: int,
+    as_json: bool,
+) -> None:
+    """Put mistakes into the library, and see whether the plates notice.
+
+    NAMES are what names of mutants begin with, such as "so3.", or a module;
+    without them it is the whole catalogue.  Each is tried by itself, in a process
+    of its own, on the plates that execute what it changes, against the
+    plates without a mistake; at least one plate of each command, and further
+    ones until six pictures have noticed.  What was found is kept, so that a run that is
+    stopped goes on where it was.
+    Ends with 5 if one that changes a plate is noticed by none, if one that moves
+    something by 0.35 pixel is not noticed by a picture, or if the catalogue is
+    wrong about which are harmless.
+    """
+    from lietool.verbs import _figures_mutants
+
+    if listing:
+        _figures_mutants.listed(names, as_json)
+        return
+    wanted = _figures_mutants.Wanted(names, jobs, quick, seed, fresh, every, record, as_json)
+    context.exit(_figures_mutants.run(_studio.items(ids), wanted))
+
+
 def _state(item: _studio.Item) -> str:
     from lietool.golden import store
 

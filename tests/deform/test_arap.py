@@ -4,8 +4,8 @@ import igl
 import numpy as np
 import pytest
 
-from lietool.deform import arap
-from lietool.lie import so3
+from lietool.deform import arap, arap_kernels
+from lietool.lie import polar, quaternion, so3
 from lietool.mesh import laplacian
 
 
@@ -33,6 +33,11 @@ def bent(V: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     moved = V.copy()
     moved[end] = (V[end] - V[end[0]]) @ so3.exp(np.array([0.4, 0.9, -0.3])).T + V[end[0]] + [0, 1, 0]
     return pins, moved
+
+
+def unit(n: int) -> np.ndarray:
+    """Quaternions (4, n) of no turn."""
+    return np.repeat(np.eye(4)[:, :1], n, axis=1)
 
 
 @pytest.mark.parametrize("rounds", [1, 2, 8])
@@ -67,8 +72,8 @@ def test_the_energy_is_that_of_the_edges():
     V, F = bar(6, 4)
     pins, moved = bent(V)
     prepared = arap.prepare(V, F, pins)
-    J = arap._maps(prepared, moved)
-    R = arap._rotations(prepared, J)
+    turned, _ = arap_kernels.rotations((prepared.sums @ moved).reshape(-1, 9), unit(len(V)))
+    R = turned.reshape(-1, 3, 3).swapaxes(1, 2)
     cot = laplacian.cotangents(V, F)
     total = 0.0
     for f, face in enumerate(F):
@@ -77,7 +82,29 @@ def test_the_energy_is_that_of_the_edges():
                 i, j = face[(k + 1) % 3], face[(k + 2) % 3]
                 miss = moved[j] - moved[i] - R[corner] @ (V[j] - V[i])
                 total += cot[f, k] / 2 * miss @ miss / 3
-    assert arap._energy(prepared, J, R) == pytest.approx(total, rel=1e-12)
+    assert arap._energy(prepared, moved, turned) == pytest.approx(total, rel=1e-12)
+
+
+@pytest.mark.parametrize("start", ["unit", "near", "any"])
+def test_rotations_followed_are_those_of_the_singular_values(start):
+    rng = np.random.default_rng(5)
+    S = rng.normal(size=(9000, 3, 3)) * np.exp(rng.normal(size=(9000, 1, 1)) * 8)
+    S[::7] = so3.exp(rng.normal(size=S[::7].shape[:2])) @ np.diag([1.0, 0.5, 0.0])
+    S[::11] = so3.exp(2.0 * rng.normal(size=S[::11].shape[:2])) * 1e-7
+    U, d, W = np.linalg.svd(S)
+    sign = np.linalg.det(U @ W)
+    # Where two of the singular values nearly cancel, no method tells the rotation to so many digits.
+    clear = d[:, 1] + sign * d[:, 2] > 1e-2 * d[:, 0]
+    assert clear.mean() > 0.9 and (sign < 0.0).mean() > 0.3
+    U[:, :, 2] *= sign[:, None]
+    near = polar.rotation(S, check=False) @ so3.exp(0.1 * rng.normal(size=(len(S), 3)))
+    every = so3.exp(4.0 * rng.normal(size=(len(S), 3)))
+    q = {"unit": unit(len(S)), "near": quaternion.from_matrix(near).T, "any": quaternion.from_matrix(every).T}
+    R, found = arap_kernels.rotations(S.swapaxes(1, 2).reshape(-1, 9), np.ascontiguousarray(q[start]))
+    R = R.reshape(-1, 3, 3).swapaxes(1, 2)
+    assert np.abs(R - U @ W)[clear].max() <= 1e-12
+    assert np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max() <= 1e-14
+    assert np.abs(quaternion.to_matrix(found.T) - R).max() <= 1e-14
 
 
 def test_a_rigid_motion_is_the_least_and_is_kept():

@@ -4,8 +4,8 @@ import json
 
 import numpy as np
 import pytest
+from lietool.figures.ch7 import _close as close
 from lietool.figures.ch7 import _poisson_case as case_
-from lietool.figures.ch7 import _poisson_close as close
 from lietool.figures.ch7 import _poisson_examples as examples
 
 from lietool import figure, paths

@@ -103,13 +103,39 @@ def test_one_level_in_a_region_passes():
 
 
 @pytest.mark.parametrize(("count", "passes"), [(8, True), (9, False)])
-def test_eight_pixels_may_be_too_far_and_nine_not(count, passes):
+def test_eight_pixels_in_one_place_may_be_too_far_and_nine_not(count, passes):
     image = np.full((90, 200, 3), 128, np.uint8)
     other = image.copy()
-    other[40, 10 : 10 + 20 * count : 20] += 8
+    # Around one of them as far as the place reaches, the nine on both of its rims.
+    other[40, 84 : 84 + 4 * count : 4] += 8
     found = compare.images(image, other)
-    assert found.over == found.differing == count and not found.too_wide
+    assert found.over == found.differing == found.crowd == count and not found.too_wide
     assert found.passes is passes
+
+
+@pytest.mark.parametrize(("count", "passes"), [(48, True), (49, False)])
+def test_strewn_pixels_may_be_too_far_where_none_crowd(count, passes):
+    image = np.full((140, 200, 3), 128, np.uint8)
+    other = image.copy()
+    place = np.arange(count)
+    other[10 + 17 * (place // 10), 10 + 18 * (place % 10)] += 8
+    found = compare.images(image, other)
+    assert found.over == found.differing == count and found.crowd == 1 and not found.too_wide
+    assert found.passes is passes and found.headroom_pixels == (0 if passes else -1)
+
+
+def test_a_crowd_is_counted_alike_by_pairs_and_by_sums():
+    chance = np.random.default_rng(4)
+    for size in (3 * compare.STREWN, 20 * compare.STREWN):
+        spots = np.unique(chance.integers(0, (60, 90), (size, 2)), axis=0)
+        y, x = spots.T
+        image = np.full((60, 90, 3), 128, np.uint8)
+        other = image.copy()
+        other[y, x] += 8
+        near = (np.abs(y - y[:, None]) <= 16) & (np.abs(x - x[:, None]) <= 16)
+        found = compare.images(image, other)
+        assert found.over == len(spots) and found.crowd == near.sum(axis=1).max()
+        assert found.crowd_at is not None and (other[found.crowd_at[::-1]] == 136).all()
 
 
 @pytest.mark.parametrize(("total", "passes"), [(121, True), (122, False), (-121, True), (-122, False)])

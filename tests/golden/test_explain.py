@@ -45,7 +45,7 @@ def test_pictures_smaller_than_a_window_are_explained():
 
 def test_lines_have_the_numbers_of_the_verdict(changed):
     said = explain.lines(BASE, changed, compare.images(BASE, changed))
-    assert said[0].startswith("159 px beyond dE 2 (allowed 8), largest ")
+    assert said[0].startswith("159 px beyond dE 2 (48 allowed), 150 of them in one place (8 allowed), ")
     assert said[1].startswith("9x9 mean -230.00 levels of") or "9x9 mean -200.00 levels of" in said[1]
     assert len(said) == 4
 
