@@ -136,15 +136,31 @@ def verify(context: click.Context, ids: tuple[str, ...], folder: Path, jobs: int
 @_IDS
 @click.option("--reason", metavar="TEXT", help="Why the pictures are right; kept with them.")
 @click.option("--all", "everything", is_flag=True, help="All plates.")
-def accept(ids: tuple[str, ...], reason: str | None, everything: bool) -> None:
+@click.option(
+    "--from",
+    "review",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    metavar="REVIEW.JSON",
+    help="What was marked in a report, each with its reason.",
+)
+def accept(ids: tuple[str, ...], reason: str | None, everything: bool, review: Path | None) -> None:
     """Make new goldens, and say what changed.
 
     Look at the pictures first: what the plates show now is what they are held
     to from now on.  Plates that have not changed at all are left alone.
-    Refused (4) where the renderer is not canonical.
+    Refused (4) where the renderer is not canonical.  With --from it is what was
+    marked in the page of `lietool figures report`; if a plate shows anything
+    else by now, nothing is accepted (5).
     """
     from lietool.verbs import _figures_accept
 
+    if review is not None:
+        from lietool.verbs import _figures_review
+
+        if ids or everything or reason is not None:
+            raise click.UsageError("--from has the plates and their reasons. Leave out the others")
+        _figures_review.run(review, _studio.current())
+        return
     if not reason or not reason.strip():
         raise click.UsageError('accept needs a reason, which is kept with the golden: --reason "..."')
     if bool(ids) == everything:
@@ -182,6 +198,33 @@ def gallery(ids: tuple[str, ...], folder: Path, golden: bool, readme: bool, jobs
         raise click.UsageError("--readme is for all plates. Leave out the others and --golden")
     changed = _figures_gallery.write_readme(_studio.items())
     click.echo("\n".join(map(str, changed)) or "nothing has changed")
+
+
+@command.command()
+@_IDS
+@click.option(
+    "-o",
+    "--output",
+    "path",
+    type=click.Path(path_type=Path),
+    default=Path("out/report.html"),
+    show_default=True,
+    help="The file to write.",
+)
+@_JOBS
+@click.pass_context
+def report(context: click.Context, ids: tuple[str, ...], path: Path, jobs: int) -> None:
+    """Compare pictures with their goldens on one page.
+
+    One file, to open in a browser: it needs no network, and goes with any other
+    file of a test run.  Pictures are swiped, blinked, subtracted and magnified
+    there, numbers that changed are listed, and what is right is marked with a
+    reason for `lietool figures accept --from`.  It ends as `verify` does.
+    """
+    from lietool.verbs import _figures_report
+
+    items = _studio.items(ids)
+    context.exit(_figures_report.run(items, _studio.current(), path, everything=not ids, jobs=jobs))
 
 
 def _state(item: _studio.Item) -> str:
