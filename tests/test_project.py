@@ -123,6 +123,9 @@ def test_the_whole_way(course, tmp_path, canonical):
     own(moved, "gallery", "--golden")
     page = Path("out/gallery/index.html").read_text()
     assert "checkout" in page and "B2.8" not in page
+    own(moved, "report", "-o", "report.html")
+    page = Path("report.html").read_text()
+    assert f"lietool --project {moved} figures accept --from review.json" in page and "B2.8" not in page
     # A drawing that has changed, and a golden that belongs to nobody.
     (Path(moved) / "figures" / "angles.txt").write_text("76")
     said = own(moved, "verify", "X1b", code=5)
@@ -167,4 +170,5 @@ def test_a_project_without_figures_does_not_pass(tmp_path, monkeypatch):
     monkeypatch.setenv(figure.PROJECT, "")
     assert "must be a folder with a folder figures/ in it" in own(tmp_path, "verify", code=2)
     (tmp_path / "figures").mkdir()
-    assert "there is no plate to verify" in own(tmp_path, "verify", code=2)
+    assert "there is no plate to compare" in own(tmp_path, "verify", code=2)
+    assert "there is no plate to compare" in own(tmp_path, "report", code=2)

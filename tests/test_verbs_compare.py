@@ -54,7 +54,7 @@ class TestCompare:
         assert run("compare a.png b.png").splitlines()[0] == "equal"
         save("b.png", BASE + (np.indices(BASE.shape).sum(0) % 2).astype(np.uint8))
         said = run("compare a.png b.png")
-        assert said.startswith("same\n") and re.search(r"pixels beyond dE 2 +0 +8", said)
+        assert said.startswith("same\n") and re.search(r"pixels beyond dE 2 +0 +48", said)
 
     def test_different_says_where_and_how_far(self):
         save("b.png", other())

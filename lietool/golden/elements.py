@@ -123,9 +123,7 @@ def _worst(found: Difference, a: np.ndarray, b: np.ndarray, most: int) -> tuple[
     for row in indices:
         index = tuple(int(i) for i in row)[: a.ndim]
         by = None if off is None else float(off[index])
-        said.append(
-            Element(index, place(found.entry, index, a.shape), a[index].item(), b[index].item(), by)
-        )
+        said.append(Element(index, place(found.entry, index, a.shape), a[index].item(), b[index].item(), by))
     return tuple(said)
 
 

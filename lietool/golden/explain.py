@@ -104,7 +104,7 @@ def similarity_png(expected: np.ndarray, actual: np.ndarray) -> bytes:
 
     from PIL import Image
 
-    # SSIM falls to half at a trace that nobody sees; the root keeps what is slight apart from what is not there.
+    # The root shows also what is slight: most of a difference has a similarity near 1.
     unlike = np.sqrt(np.clip(1.0 - _similarity(expected, actual), 0.0, 1.0))
     picture = Image.fromarray((unlike * 255).round().astype(np.uint8), "L").convert("P")
     ramp = np.linspace(0.0, 1.0, 256)[:, None]

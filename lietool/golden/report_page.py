@@ -83,7 +83,9 @@ def _plate(entry: Entry) -> dict[str, Any]:
         "messages": entry.messages,
         "thumb": _thumb(entry.actual or entry.expected),
         "pictures": list(_pictures(entry)),
-        "words": " ".join([entry.name, entry.title, entry.kind, entry.word, *map(str, entry.differences)]).lower(),
+        "words": " ".join(
+            [entry.name, entry.title, entry.kind, entry.word, *map(str, entry.differences)]
+        ).lower(),
         "used": None if entry.kind == PASSED else max((bar["used"] for bar in bars), default=None),
         "bars": bars,
         "because": entry.because,
@@ -158,7 +160,9 @@ def _bars(entry: Entry) -> Iterator[dict[str, Any]]:
             found.over,
             found.pixels_limit,
             f"{found.over} of {found.pixels_limit}",
-            f"{found.headroom_pixels} more would pass" if found.headroom_pixels >= 0 else f"{-found.headroom_pixels} too many",
+            f"{found.headroom_pixels} more would pass"
+            if found.headroom_pixels >= 0
+            else f"{-found.headroom_pixels} too many",
             found.largest_delta_e_at,
             f"largest dE {found.largest_delta_e:.1f}",
         )
@@ -168,7 +172,9 @@ def _bars(entry: Entry) -> Iterator[dict[str, Any]]:
             abs(found.lowpass),
             found.lowpass_limit,
             f"{_signed(found.lowpass)} of ±{found.lowpass_limit:g}",
-            f"{found.headroom_lowpass:.2f} more would pass" if not found.too_wide else f"{-found.headroom_lowpass:.2f} too much",
+            f"{found.headroom_lowpass:.2f} more would pass"
+            if not found.too_wide
+            else f"{-found.headroom_lowpass:.2f} too much",
             found.lowpass_at,
             f"{_signed(found.lowpass)} levels{channel}",
         )
@@ -222,31 +228,24 @@ def _blob(blob: explain.Blob) -> dict[str, str]:
 
 
 def _group(found: Difference, worst: Sequence[elements.Element]) -> dict[str, Any]:
+    """One entry that differs: what is allowed, and its elements, the worst first."""
     if found.kind != "value":
-        says = {"missing": ("there", "missing"), "extra": ("not in the golden", "there")}
-        before, after = says.get(found.kind, (f"{found.kind} {found.expected}", f"{found.kind} {found.got}"))
-        return {"rows": [_row(found.entry, "", before, after)], "others": ""}
-    allowed = "" if found.allowed is None else f"{found.allowed:.2g}"
-    rows = [
-        _row(
-            "" if i else found.entry,
-            each.where,
-            _value(each.expected),
-            _value(each.got),
-            "" if each.by is None else f"{each.by:+.3g}".replace("-", "−"),
-            "" if i else allowed,
-        )
-        for i, each in enumerate(worst)
-    ]
+        words = {"missing": ("there", "missing"), "extra": ("none", "not in the golden")}
+        before, after = words.get(found.kind, (str(found.expected), str(found.got)))
+        return {"entry": found.entry, "says": "", "rows": [_row(found.kind, before, after)]}
+    rows = [_row(each.where, _value(each.expected), _value(each.got), each.by) for each in worst]
     if not rows:
-        by = "" if found.by is None else f"{found.by:.3g}"
         index = f"[{', '.join(map(str, found.index))}]" if found.index else ""
-        rows = [_row(found.entry, index, _value(found.expected), _value(found.got), by, allowed)]
-    return {"rows": rows, "others": _more(found.count - len(rows), "element")}
+        rows = [_row(index, _value(found.expected), _value(found.got), found.by)]
+    says = [] if found.allowed is None else [f"{found.allowed:.2g} allowed"]
+    if found.count > 1:
+        says.append(f"{found.count} elements differ" + (", the worst:" if found.count > len(rows) else ""))
+    return {"entry": found.entry, "says": "; ".join(says), "rows": rows}
 
 
-def _row(entry: str, where: str, expected: str, got: str, by: str = "", allowed: str = "") -> dict[str, str]:
-    return {"entry": entry, "where": where, "expected": expected, "got": got, "by": by, "allowed": allowed}
+def _row(where: str, expected: str, got: str, by: float | None = None) -> dict[str, str]:
+    off = "" if by is None else f"{by:+.3g}".replace("-", "−")
+    return {"where": where, "expected": expected, "got": got, "by": off}
 
 
 def _value(value: object) -> str:
@@ -267,4 +266,3 @@ def _provenance(golden: Mapping[str, str], now: Mapping[str, str]) -> Iterator[d
             "same": pair[0] == pair[1],
             "differs": differs,
         }
-

@@ -93,7 +93,8 @@ def show(found: Pair) -> None:
     click.echo(click.style(found.word, "red" if CODES[found.word] else "green"))
     if c.same_size and not c.equal:
         rows = [
-            (f"pixels beyond dE {c.delta_e_limit:g}", f"{c.over}", f"{c.pixels_limit}", ""),
+            (f"pixels beyond dE {c.delta_e_limit:g}", f"{c.over}", f"{c.strewn_limit}", ""),
+            ("of them in one place", f"{c.crowd}", f"{c.pixels_limit}", _at(c.crowd_at)),
             (
                 "9x9 mean",
                 f"{c.lowpass:+.2f} levels of {c.lowpass_channel}",

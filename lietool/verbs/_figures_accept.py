@@ -1,7 +1,7 @@
 """`lietool figures accept`: the only thing that writes goldens."""
 
 import contextlib
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import click
 
@@ -9,7 +9,12 @@ from lietool.golden import compare, compare_numbers, folder, history, numbers, s
 from lietool.verbs import _figures_gallery, _recorded, _studio, _table
 
 
-def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> None:
+def run(
+    items: Sequence[_studio.Item],
+    studio: _studio.Studio,
+    reason: str | Mapping[str, str],
+    before: Callable[[], None] = lambda: None,
+) -> None:
     """Make what plates show now their goldens, and print what has changed.
 
     Parameters
@@ -18,8 +23,10 @@ def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> N
         The plates.
     studio : Studio
         The renderer.
-    reason : str
-        Why they are right.
+    reason : str or Mapping[str, str]
+        Why they are right, all or each plate.
+    before : callable
+        What may still stop it, once nobody else can write to the goldens.
 
     Raises
     ------
@@ -36,8 +43,10 @@ def run(items: Sequence[_studio.Item], studio: _studio.Studio, reason: str) -> N
         for root in sorted(roots):
             with _studio.writing(str(root)):
                 locks.enter_context(folder.lock(root))
+        before()
         for item in _table.progress(items, "accepting"):
-            click.echo(f"{item.id}: {_accept(item, studio, reason)}")
+            why = reason if isinstance(reason, str) else reason[item.id]
+            click.echo(f"{item.id}: {_accept(item, studio, why)}")
         for root in roots:
             with _studio.writing(str(root)):
                 removed = folder.sweep(root, [place for place in everything if place.root == root])

@@ -14,6 +14,8 @@ from lietool.verbs import _jobs, _studio
 
 # Of these a reader wants to see the pictures.
 _SEEN = {"picture", "size", "missing", "torn", "half accepted", "parameters", "inputs"}
+# A plate's own parameters were drawn once; where that fails, the other plates still have to be judged.
+UNDRAWN = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +63,7 @@ def run(
     work = partial(_judged, studio=studio if jobs < 2 else None, failed=failed)
     results = list(_jobs.each(work, items, jobs, "verifying"))
     if everything:
-        general += _unregistered(items)
+        general += unregistered(items)
     code = verdict.exit_code([*general, *(f for result in results for f in result.verdict.findings)])
     if as_json:
         about = {
@@ -78,12 +80,15 @@ def run(
 def _judged(item: _studio.Item, studio: _studio.Studio | None, failed: Path) -> Result:
     try:
         return _verify(item, studio or _studio.Studio(), failed)
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        # Its own parameters were drawn once; the other plates still have to be judged.
-        kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-        said = " ".join(str(error).split())
-        found = verdict.Finding("undrawn", f"cannot be drawn any more: {kind}{said}")
-        return Result(item, verdict.Verdict((found,)))
+    except UNDRAWN as error:
+        return Result(item, verdict.Verdict((undrawn(error),)))
+
+
+def undrawn(error: Exception) -> verdict.Finding:
+    """Say why a plate cannot be drawn any more."""
+    kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
+    said = " ".join(str(error).split())
+    return verdict.Finding("undrawn", f"cannot be drawn any more: {kind}{said}")
 
 
 def judge(
@@ -146,7 +151,8 @@ def _verify(item: _studio.Item, studio: _studio.Studio, failed: Path) -> Result:
     return Result(item, replace(found, golden=None), tuple(lines), tuple(left))
 
 
-def _unregistered(items: Sequence[_studio.Item]) -> list[verdict.Finding]:
+def unregistered(items: Sequence[_studio.Item]) -> list[verdict.Finding]:
+    """Find the goldens that belong to no plate; `items` are all plates."""
     places = [item.place for item in items]
     strays = [
         path for root in {place.root: 0 for place in places} for path in folder.unregistered(root, places)

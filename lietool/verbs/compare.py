@@ -21,7 +21,7 @@ from lietool.verbs import _compared
     type=click.IntRange(0),
     default=compare.PIXELS,
     show_default=True,
-    help="How many pixels may be far from their colour.",
+    help="How many pixels in one place may be far from their colour; in all it is 48, or as many as this.",
 )
 @click.option(
     "--delta-e",

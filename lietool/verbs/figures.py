@@ -1,9 +1,7 @@
 """List the plates, build them, and verify or accept them against their goldens."""
 
 import json
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -46,13 +44,15 @@ def command() -> None:
 @_JSON
 def list_(ids: tuple[str, ...], as_json: bool) -> None:
     """List plates and the state of their goldens."""
+    from lietool.verbs import _figures_show
+
     rows = [
         {
             "plate": item.id,
             "command": item.command,
             "title": item.plate.title,
             "equations": list(item.plate.equations),
-            "golden": _state(item),
+            "golden": _figures_show.state(item),
         }
         for item in _studio.items(ids)
     ]
@@ -69,12 +69,14 @@ def list_(ids: tuple[str, ...], as_json: bool) -> None:
 @_JSON
 def show(plate: str, as_json: bool) -> None:
     """Show all about a plate and its golden."""
-    described = [_describe(item) for item in _studio.items([plate])]
+    from lietool.verbs import _figures_show
+
+    described = [_figures_show.describe(item) for item in _studio.items([plate])]
     if as_json:
         click.echo(json.dumps(described, indent=2, ensure_ascii=False))
         return
     for number, about in enumerate(described):
-        click.echo("\n" * (number > 0) + "\n".join(_lines(about)))
+        click.echo("\n" * (number > 0) + "\n".join(_figures_show.lines(about)))
 
 
 @command.command()
@@ -126,10 +128,7 @@ def verify(context: click.Context, ids: tuple[str, ...], folder: Path, jobs: int
     """
     from lietool.verbs import _figures_verify
 
-    items = _studio.items(ids)
-    if not items:
-        # A check that looks at nothing passes for ever.
-        raise _studio.Stop(2, "there is no plate to verify. Write a figure first: README.md has an example")
+    items = _to_judge(ids)
     context.exit(
         _figures_verify.run(
             items, _studio.current(), folder / "failed", as_json, everything=not ids, jobs=jobs
@@ -141,15 +140,31 @@ def verify(context: click.Context, ids: tuple[str, ...], folder: Path, jobs: int
 @_IDS
 @click.option("--reason", metavar="TEXT", help="Why the pictures are right; kept with them.")
 @click.option("--all", "everything", is_flag=True, help="All plates.")
-def accept(ids: tuple[str, ...], reason: str | None, everything: bool) -> None:
+@click.option(
+    "--from",
+    "review",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    metavar="REVIEW.JSON",
+    help="What was marked in a report, each with its reason.",
+)
+def accept(ids: tuple[str, ...], reason: str | None, everything: bool, review: Path | None) -> None:
     """Make new goldens, and say what changed.
 
     Look at the pictures first: what the plates show now is what they are held
     to from now on.  Plates that have not changed at all are left alone.
-    Refused (4) where the renderer is not canonical.
+    Refused (4) where the renderer is not canonical.  With --from it is what was
+    marked in the page of `lietool figures report`; if a plate shows anything
+    else by now, nothing is accepted (5).
     """
     from lietool.verbs import _figures_accept
 
+    if review is not None:
+        from lietool.verbs import _figures_review
+
+        if ids or everything or reason is not None:
+            raise click.UsageError("--from has the plates and their reasons. Leave out the others")
+        _figures_review.run(review, _studio.current())
+        return
     if not reason or not reason.strip():
         raise click.UsageError('accept needs a reason, which is kept with the golden: --reason "..."')
     if bool(ids) == everything:
@@ -187,6 +202,33 @@ def gallery(ids: tuple[str, ...], folder: Path, golden: bool, readme: bool, jobs
         raise click.UsageError("--readme is for all plates. Leave out the others and --golden")
     changed = _figures_gallery.write_readme(_studio.items())
     click.echo("\n".join(map(str, changed)) or "nothing has changed")
+
+
+@command.command()
+@_IDS
+@click.option(
+    "-o",
+    "--output",
+    "path",
+    type=click.Path(path_type=Path),
+    default=Path("out/report.html"),
+    show_default=True,
+    help="The file to write.",
+)
+@_JOBS
+@click.pass_context
+def report(context: click.Context, ids: tuple[str, ...], path: Path, jobs: int) -> None:
+    """Compare pictures with their goldens on one page.
+
+    One file, to open in a browser: it needs no network, and goes with any other
+    file of a test run.  Pictures are swiped, blinked, subtracted and magnified
+    there, numbers that changed are listed, and what is right is marked with a
+    reason for `lietool figures accept --from`.  It ends as `verify` does.
+    """
+    from lietool.verbs import _figures_report
+
+    items = _to_judge(ids)
+    context.exit(_figures_report.run(items, _studio.current(), path, everything=not ids, jobs=jobs))
 
 
 @command.command()
@@ -255,55 +297,8 @@ def mutants(
     context.exit(_figures_mutants.run(_studio.items(ids), wanted))
 
 
-def _state(item: _studio.Item) -> str:
-    from lietool.golden import store
-
-    try:
-        store.provenance(item.place)
-    except store.GoldenError as error:
-        return error.kind
-    return "golden"
-
-
-def _describe(item: _studio.Item) -> dict[str, Any]:
-    from lietool.golden import history, store
-
-    try:
-        golden: dict[str, str] = store.provenance(item.place)
-    except store.GoldenError as error:
-        golden = {"state": f"{error.kind}: {error}"}
-    past = [asdict(change) for change in history.read(golden)]
-    golden.pop(history.KEY, None)
-    code = item.figure.function.__code__
-    return {
-        "plate": item.id,
-        "title": item.plate.title,
-        "caption": item.plate.caption,
-        "equations": list(item.plate.equations),
-        "command": _making(item),
-        "parameters": json.loads(item.recorded),
-        "file": f"{item.figure.file}:{code.co_firstlineno}",
-        "golden": {"file": str(item.place.png), **golden},
-        "history": past,
-    }
-
-
-def _making(item: _studio.Item) -> str:
-    first = item.id == next(iter(item.declared.plates))
-    return f"{item.program} {item.command}" + ("" if first else f" --plate {item.id}")
-
-
-def _lines(about: dict[str, Any]) -> list[str]:
-    equations = f"  (equations {', '.join(about['equations'])})" if about["equations"] else ""
-    lines = [f"{about['plate']}  {about['title']}{equations}", f"  {about['caption']}", ""]
-    for key in ("command", "file"):
-        lines.append(f"  {key:<12}{about[key]}")
-    for key in ("parameters", "golden"):
-        lines.append(f"  {key}")
-        lines += [f"    {name:<16}{value}" for name, value in about[key].items()]
-    if about["history"]:
-        lines.append("  accepted")
-    for change in about["history"]:
-        what = f" ({change['what']})" if change["what"] else ""
-        lines.append(f"    {change['date']:<16}  {change['commit']}: {change['reason']}{what}")
-    return lines
+def _to_judge(ids: tuple[str, ...]) -> list[_studio.Item]:
+    if items := _studio.items(ids):
+        return items
+    # A check that looks at nothing passes for ever.
+    raise _studio.Stop(2, "there is no plate to compare. Write a figure first: README.md has an example")

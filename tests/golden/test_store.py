@@ -1,15 +1,21 @@
 """Goldens on disk: whole, old, new or known to be half, whatever happens to whoever writes them."""
 
+import errno
 import os
 import signal
+import struct
 import subprocess
 import sys
+import tempfile
+import threading
 import time
+import zlib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from lietool.golden import folder, store
 
@@ -115,6 +121,60 @@ def test_a_picture_of_another_mode_is_torn(place):
     assert kind(place) == "torn"
 
 
+def as_it_says(place):
+    with Image.open(place.png) as image:
+        info = PngInfo()
+        for key, value in image.text.items():  # type: ignore[attr-defined]
+            info.add_text(key, value)
+    return info
+
+
+def enlarged(data):
+    """The header of a picture of 10 gigapixels, before the bytes of a small one."""
+    header = struct.pack(">II", 100_000, 100_000) + data[24:29]
+    return data[:16] + header + struct.pack(">I", zlib.crc32(b"IHDR" + header)) + data[33:]
+
+
+@pytest.mark.parametrize(
+    ("image", "words"),
+    [
+        (Image.fromarray(NEW).quantize(16), "is not of 8 bits of red, green and blue"),
+        (Image.fromarray(NEW).convert("RGBA"), "is not of 8 bits of red, green and blue"),
+        (Image.fromarray(NEW[..., 0].astype(np.uint16) * 257), "is not of 8 bits of red, green and blue"),
+        (Image.fromarray(NEW ^ np.uint8(1)), "has other pixels than were accepted"),
+        (Image.fromarray(NEW[:6]), "has other pixels than were accepted"),
+    ],
+    ids=["palette", "alpha", "deep", "pixels", "size"],
+)
+def test_a_picture_that_was_saved_anew_otherwise_is_torn(place, image, words):
+    write(place)
+    image.save(place.png, pnginfo=as_it_says(place))
+    with pytest.raises(store.GoldenError, match=words):
+        store.read(place)
+
+
+def test_a_picture_that_was_only_packed_anew_is_whole(place):
+    write(place)
+    Image.fromarray(NEW).save(place.png, pnginfo=as_it_says(place), compress_level=1)
+    assert np.array_equal(store.read(place).image, NEW)
+
+
+def test_what_only_looks_like_a_golden_is_torn(place):
+    write(place)
+    whole, info = place.png.read_bytes(), as_it_says(place)
+    other = {"save_all": True, "append_images": [Image.fromarray(OLD)]}
+    Image.fromarray(NEW).save(place.png, "PNG", pnginfo=info, **other)
+    with pytest.raises(store.GoldenError, match="it holds more than one picture"):
+        store.read(place)
+    Image.fromarray(NEW).save(place.png, "JPEG")
+    with pytest.raises(store.GoldenError, match="it is no PNG, as its name says, but a JPEG"):
+        store.read(place)
+    place.png.write_bytes(enlarged(whole))
+    for read in (store.read, store.provenance):
+        with pytest.raises(store.GoldenError, match="it has far too many pixels"):
+            read(place)
+
+
 def test_numbers_that_are_no_json_are_not_read(place):
     write(place)
     place.json.write_bytes(place.json.read_bytes()[:-9])
@@ -125,6 +185,76 @@ def test_numbers_that_are_not_finite_are_refused_before_anything_is_written(plac
     with pytest.raises(ValueError, match=r"must be finite; got a.b\[1\] is nan"):
         write(place, values={"a": {"b": np.array([1.0, np.nan])}})
     assert not place.root.exists()
+
+
+@pytest.mark.parametrize("step", range(13))
+def test_a_full_disk_leaves_the_old_golden_and_nothing_else(place, monkeypatch, step):
+    write(place, image=OLD, values={"x": 1.0}, keys=("k1",))
+    count = 0
+
+    def full(real):
+        def wrapped(*arguments, **options):
+            nonlocal count
+            count += 1
+            if count == step + 1:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            return real(*arguments, **options)
+
+        return wrapped
+
+    before = {path: path.read_bytes() for path in place.root.rglob("*.*")}
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", full(os.fsync))
+        patch.setattr(tempfile, "mkstemp", full(tempfile.mkstemp))
+        patch.setattr(Path, "replace", full(Path.replace))
+        with pytest.raises(OSError, match="No space left"):
+            write(place, values={"x": 2.0}, keys=("k1", "k2"))
+    golden = store.read(place)
+    # Two labels, numbers and picture are opened, synced and renamed; then the numbers get their name,
+    # without which they are found as well.
+    assert golden.numbers["x"] == (1.0 if step < 12 else 2.0)
+    left = {path: path.read_bytes() for path in place.root.rglob("*.*") if path.name != "k2.png"}
+    assert left == before if step < 12 else place.png in left
+    with folder.lock(place.root):
+        folder.sweep(place.root, [place])
+    assert not [path for path in place.root.rglob("*") if path.name.endswith((".part", ".next"))]
+
+
+def test_a_reader_never_sees_half_of_what_somebody_is_writing(place):
+    def write_often():
+        for turn in range(20):
+            write(place, image=NEW if turn % 2 else OLD, values={"x": float(turn % 2)})
+
+    write(place, image=OLD, values={"x": 0.0})
+    writer = threading.Thread(target=write_often)
+    writer.start()
+    seen = set()
+    while writer.is_alive():
+        golden = store.read(place)
+        seen.add((float(golden.numbers["x"]), bool(golden.image.any())))  # type: ignore[arg-type]
+        assert store.provenance(place)
+    writer.join()
+    assert seen <= {(0.0, False), (1.0, True)} and seen
+
+
+def test_what_a_killed_writer_left_is_finished_or_forgotten(place):
+    write(place, image=OLD, values={"x": 1.0})
+    old = place.json.read_bytes()
+    write(place, values={"x": 2.0})
+    new, waiting = place.json.read_bytes(), place.json.with_name(".T1.b.json.next")
+    # Killed after the picture got its name.
+    place.json.write_bytes(old)
+    waiting.write_bytes(new)
+    assert store.read(place).numbers["x"] == 2.0
+    place.json.unlink()
+    assert store.read(place).numbers["x"] == 2.0
+    folder.sweep(place.root, [place])
+    assert place.json.read_bytes() == new and not waiting.exists()
+    # Killed before.
+    waiting.write_bytes(old)
+    assert store.read(place).numbers["x"] == 2.0
+    folder.sweep(place.root, [place])
+    assert place.json.read_bytes() == new and not waiting.exists()
 
 
 def test_strays_are_listed(place):
