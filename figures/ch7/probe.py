@@ -6,7 +6,6 @@ from typing import Annotated, Literal
 
 from lietool.figure import Drawing, Param, Plate, Time, figure
 
-from . import _probe_arm as arm
 from . import _probe_examples as example_
 from . import _probe_own as own
 from . import _probe_pages as pages
@@ -289,7 +288,7 @@ def probe(
         case "strings":
             drawing = pages.columns(moving, other, t, steps)
         case "octopus":
-            drawing = arm.page(moving, other, t)
+            drawing = pages.compare(moving, other, t)
         case _:
             drawing = pages.pair(moving, t)
     fps = 24.0 if case.poses is None else case.poses.fps
