@@ -85,6 +85,15 @@ class Comparison:
         )
 
     @property
+    def says(self) -> str:
+        """All that the verdict rests on, in words."""
+        return (
+            f"{self.beyond}, largest {self.largest_delta_e:.1f} at {self.largest_delta_e_at};"
+            f" 9x9 mean {self.lowpass:+.2f} levels of {self.lowpass_channel} ({self.lowpass_limit:g} allowed)"
+            f" at {self.lowpass_at}"
+        )
+
+    @property
     def headroom_pixels(self) -> int:
         """How many more pixels might exceed the colour distance in one place; negative when it failed."""
         return min(self.pixels_limit - self.crowd, self.strewn_limit - self.over)

@@ -243,10 +243,7 @@ def _picture(comparison: compare.Comparison, accept: str) -> Iterable[Finding]:
     elif not comparison.passes:
         yield Finding(
             "picture",
-            f"picture differs: {comparison.beyond}, largest {comparison.largest_delta_e:.1f}"
-            f" at {comparison.largest_delta_e_at}; 9x9 mean {comparison.lowpass:+.2f} levels of"
-            f" {comparison.lowpass_channel} ({comparison.lowpass_limit:g} allowed)"
-            f" at {comparison.lowpass_at}",
+            f"picture differs: {comparison.says}",
         )
 
 
