@@ -11,7 +11,7 @@ from . import _probe_own as own
 from . import _probe_pages as pages
 from . import _probe_recipes as recipes
 from ._probe_case import Recipe
-from ._probe_weights import DISTANCES, SMOOTH
+from ._probe_kinds import DISTANCES, SMOOTH
 
 # What makes a case one's own, on a page of its own.
 _OWN = ("shape", "probes", "probe", "poses")
