@@ -57,7 +57,7 @@ def follow(items: Sequence[_studio.Item]) -> Iterator[dict[str, list[int]]]:
 
 
 def attempt(mutant: Mutant, items: Sequence[_studio.Item], folder: Path, enough: int) -> Iterator[Outcome]:
-    """Yield what comes of a mistake on each plate; the rest is skipped when `enough` pictures have noticed."""
+    """Yield what comes of a mistake on each plate, until `enough` pictures have noticed it."""
     _keep_nothing()
     hook.install(mutant)
     seen = 0
