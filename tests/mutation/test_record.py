@@ -59,8 +59,8 @@ def test_a_sample_is_of_all_modules_and_commands_and_no_longer_than_asked():
     by_name = {m.name: m for m in mutants}
     assert {by_name[name].module for name in list(plan)[:3]} == {f"lietool.lie.m{i}" for i in range(3)}
     assert {plate for plates in plan.values() for plate in plates} == {"P1", "Q1"}
-    # A second for each process, and the seconds of the plate; twice for the first on a plate.
-    assert len(plan) == 7
+    # Each takes a process and the plate; the first on a plate twice that.
+    assert len(plan) == 9
     assert not record.sample(known, mutants, {"R1": "z"}, 0, 14.0)
 
 
