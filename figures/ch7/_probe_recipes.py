@@ -10,8 +10,7 @@ from lietool.deform.probe_values import Table, shown
 from lietool.mesh.files import Place
 
 from ._probe_case import Case
-from ._probe_kinds import SMOOTH
-from ._probe_weights import PARTS, Recipe, loose_vertices, normalised
+from ._probe_weights import PARTS, SMOOTH, Recipe, loose_vertices, normalised
 
 HOLD = 0.1
 """Unless it is said, how much farther than its nearest vertex a probe holds others: over the shape's size."""

@@ -12,11 +12,11 @@ from lietool.deform.probe_values import Table
 from lietool.mesh import geodesic, laplacian, surface, topology
 from lietool.mesh.surface import Mesh
 
-from ._probe_kinds import DISTANCES, SMOOTH
-
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
+DISTANCES = ("inverse-distance", "cutoff", "gaussian")
+SMOOTH = ("harmonic", "biharmonic")
 PARTS = ("rotation", "translation", "stretch")
 """What may have weights of its own, in the order of `weights.separate`."""
 _SUMS = {
