@@ -14,9 +14,10 @@ from ._probe_case import Recipe
 
 # What makes a case one's own, on a page of its own.
 _OWN = ("shape", "probes", "probe", "poses")
-# As in `_probe_weights`, which needs numpy; a declaration must not.
+# As in `_probe_weights` and `_probe_recipes`, which need numpy; a declaration must not.
 _DISTANCES = ("inverse-distance", "cutoff", "gaussian")
 _SMOOTH = ("harmonic", "biharmonic")
+_REACH, _HOLD = 0.5, 0.1
 
 
 @figure(
@@ -141,7 +142,7 @@ def probe(
             high=4.0,
             only=("weights", *_DISTANCES[1:]),
         ),
-    ] = recipes.REACH,
+    ] = _REACH,
     sum: Annotated[
         Literal["auto", "unity", "softmax", "capped", "none"],
         Param(
@@ -162,7 +163,7 @@ def probe(
             high=2.0,
             only=("weights", *_SMOOTH),
         ),
-    ] = recipes.HOLD,
+    ] = _HOLD,
     loose: Annotated[
         Literal["refuse", "follow"],
         Param(
