@@ -15,10 +15,10 @@ from lietool.mesh.surface import Mesh
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
-PARTS = ("rotation", "translation", "stretch")
-"""What may have weights of its own, in the order of `weights.separate`."""
 DISTANCES = ("inverse-distance", "cutoff", "gaussian")
 SMOOTH = ("harmonic", "biharmonic")
+PARTS = ("rotation", "translation", "stretch")
+"""What may have weights of its own, in the order of `weights.separate`."""
 _SUMS = {
     "unity": weights.partition_of_unity,
     "softmax": weights.softmax,

@@ -11,10 +11,13 @@ from . import _probe_own as own
 from . import _probe_pages as pages
 from . import _probe_recipes as recipes
 from ._probe_case import Recipe
-from ._probe_weights import DISTANCES, SMOOTH
 
 # What makes a case one's own, on a page of its own.
 _OWN = ("shape", "probes", "probe", "poses")
+# As in `_probe_weights` and `_probe_recipes`, which need numpy; a declaration must not.
+_DISTANCES = ("inverse-distance", "cutoff", "gaussian")
+_SMOOTH = ("harmonic", "biharmonic")
+_REACH, _HOLD = 0.5, 0.1
 
 
 @figure(
@@ -129,7 +132,7 @@ def probe(
     ] = "auto",
     power: Annotated[
         float,
-        Param("of the distance in the weights", low=0.25, high=8.0, only=("weights", *DISTANCES[:2])),
+        Param("of the distance in the weights", low=0.25, high=8.0, only=("weights", *_DISTANCES[:2])),
     ] = 2.0,
     reach: Annotated[
         float,
@@ -137,19 +140,19 @@ def probe(
             "where a cutoff ends, or the width of a Gaussian, over half the diagonal of the shape's box",
             low=0.02,
             high=4.0,
-            only=("weights", *DISTANCES[1:]),
+            only=("weights", *_DISTANCES[1:]),
         ),
-    ] = recipes.REACH,
+    ] = _REACH,
     sum: Annotated[
         Literal["auto", "unity", "softmax", "capped", "none"],
         Param(
             "of the weights at a point: made 1, or by softmax, or at most 1; auto: 1 where all weights count",
-            only=("weights", *DISTANCES),
+            only=("weights", *_DISTANCES),
         ),
     ] = "auto",
     distance: Annotated[
         Literal["straight", "surface"],
-        Param("straight, or along the surface", only=("weights", *DISTANCES)),
+        Param("straight, or along the surface", only=("weights", *_DISTANCES)),
     ] = "straight",
     hold: Annotated[
         float,
@@ -158,14 +161,14 @@ def probe(
             "shape's box",
             low=0.0,
             high=2.0,
-            only=("weights", *SMOOTH),
+            only=("weights", *_SMOOTH),
         ),
-    ] = recipes.HOLD,
+    ] = _HOLD,
     loose: Annotated[
         Literal["refuse", "follow"],
         Param(
             "parts of the shape in which no probe holds a vertex are refused, or follow the nearest with one",
-            only=("weights", *SMOOTH),
+            only=("weights", *_SMOOTH),
             needs="shape",
         ),
     ] = "refuse",

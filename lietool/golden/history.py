@@ -2,9 +2,11 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 
 KEY = "history"
+# Of what has changed, in characters: what comes after it is in the numbers' own file.
+_MOST = 400
 
 
 @dataclass(frozen=True)
@@ -49,14 +51,15 @@ def extended(before: Mapping[str, str], now: Mapping[str, str], what: str) -> st
     now : Mapping[str, str]
         Those of the new one: date, commit and reason.
     what : str
-        What has changed.
+        What has changed; what is too long is cut.
 
     Returns
     -------
     str
         JSON, for the text `KEY`.
     """
-    latest = Change(**{**asdict(_change(now)), "what": what})
+    short = what if len(what) <= _MOST else what[:_MOST].rstrip() + " …"
+    latest = replace(_change(now), what=short)
     return json.dumps([asdict(change) for change in (*read(before), latest)], ensure_ascii=False)
 
 

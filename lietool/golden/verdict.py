@@ -202,7 +202,12 @@ def changed(before: str, after: str) -> str:
     if not isinstance(a, dict) or not isinstance(b, dict):
         return "they were not recorded"
     names = [name for name in {**a, **b} if a.get(name, "absent") != b.get(name, "absent")]
-    return ", ".join(f"{name} was {a.get(name, 'absent')}, is {b.get(name, 'absent')}" for name in names)
+    return ", ".join(f"{name} was {_said(a, name)}, is {_said(b, name)}" for name in names)
+
+
+def _said(values: Mapping[str, object], name: str) -> object:
+    value = values.get(name, "absent")
+    return '""' if value == "" else value
 
 
 def _unreadable(error: store.GoldenError, accept: str) -> str:

@@ -17,17 +17,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from multiprocessing.process import BaseProcess
 
-# What every process needs, and nothing that is mutated: imported once, in the one they are forked from.
-PRELOADED = (
-    *("numpy", "scipy.linalg", "scipy.sparse.linalg", "scipy.sparse.csgraph", "scipy.spatial"),
-    *("scipy.optimize", "PIL.PngImagePlugin", "click"),
-    *(
-        "lietool.verbs._studio",
-        "lietool.verbs._mutants_work",
-        "lietool.render.draw",
-        "lietool.golden.compare",
-    ),
-)
 # In bytes, of addresses: a mistake may ask for more memory than there is.
 _MEMORY = 12 << 30
 _PATIENCE = 2.0
@@ -79,7 +68,9 @@ class _Running:
         self.deadline = time.monotonic() + allowed
 
 
-def run(jobs: Sequence[Job], at_once: int, until: float = float("inf")) -> Iterator[News]:
+def run(
+    jobs: Sequence[Job], at_once: int, until: float = float("inf"), preload: Sequence[str] = ()
+) -> Iterator[News]:
     """Do jobs, some at once, and yield what comes of their steps as it comes.
 
     Parameters
@@ -90,6 +81,9 @@ def run(jobs: Sequence[Job], at_once: int, until: float = float("inf")) -> Itera
         How many processes there are at a time.
     until : float
         When, by `time.monotonic`, no further job is begun.
+    preload : sequence of str
+        Modules that are imported once, in the process that all others are forked from; nothing that is
+        mutated, and always the same.
 
     Yields
     ------
@@ -101,7 +95,7 @@ def run(jobs: Sequence[Job], at_once: int, until: float = float("inf")) -> Itera
     try:
         while running or (waiting and time.monotonic() < until):
             while waiting and len(running) < at_once and time.monotonic() < until:
-                running.append(_begin(waiting.pop(), at_once))
+                running.append(_begin(waiting.pop(), at_once, preload))
             soonest = min(each.deadline for each in running)
             ready = wait([each.connection for each in running], max(soonest - time.monotonic(), 0.0))
             for each in list(running):
@@ -114,8 +108,8 @@ def run(jobs: Sequence[Job], at_once: int, until: float = float("inf")) -> Itera
             _end(each, at_once=True)
 
 
-def _begin(job: Job, at_once: int) -> _Running:
-    context = _context()
+def _begin(job: Job, at_once: int, preload: Sequence[str]) -> _Running:
+    context = _context(preload)
     ours, theirs = context.Pipe(duplex=False)
     environment = {key: value for key, value in os.environ.items() if key != "LP_NUM_THREADS"}
     process = context.Process(target=_child, args=(theirs, job, environment, _threads(at_once)), daemon=True)
@@ -154,13 +148,13 @@ def _end(each: _Running, at_once: bool = False) -> None:
     each.process.join(_PATIENCE)
 
 
-def _context() -> Any:
+def _context(preload: Sequence[str]) -> Any:
     """Processes that are forked from one with nothing of ours that is mutated, where there are forks."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
     # Before the first process: later it has no effect, and is the same list anyway.
-    context.set_forkserver_preload(list(PRELOADED))
+    context.set_forkserver_preload(list(preload))
     return context
 
 

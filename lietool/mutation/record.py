@@ -16,7 +16,7 @@ from lietool.mutation.score import Tried
 FILE = Path(__file__).with_name("record.json")
 
 # Seconds for a process to import the library and to make a renderer.
-_START = 1.0
+_START = 0.7
 # Plates that are kept of each mutant: a few, cheap and expensive, are enough to choose from.
 _KEPT = 12
 

@@ -16,6 +16,12 @@ from lietool.mutation.mutant import Mutant
 from lietool.mutation.score import Outcome, Tried
 from lietool.verbs import _mutants_work, _studio, _table
 
+# What every process needs.
+_PRELOADED = (
+    *("numpy", "scipy.linalg", "scipy.sparse.linalg", "scipy.sparse.csgraph", "scipy.spatial"),
+    *("scipy.optimize", "PIL.PngImagePlugin", "click", "lietool.verbs._studio"),
+    *("lietool.verbs._mutants_work", "lietool.render.draw", "lietool.golden.compare"),
+)
 # Seconds that a plate has at least, and how many times as long as without a mistake.
 _LEAST, _TIMES = 20.0, 12.0
 # And that a plate without a mistake has.
@@ -35,8 +41,7 @@ class Order:
     until : float
         When, by `time.monotonic`, no further mutant is begun.
     enough : int
-        A mutant that so many plates notice by the picture, at least one of every command having been
-        tried, is not tried on others.
+        A mutant that so many plates notice by the picture is not tried on others.
     plates : Mapping[str, Collection of str], optional
         For each mutant's name the plates to try it on; without it all that execute what it changes.
     """
@@ -89,7 +94,9 @@ def run(mutants: Sequence[Mutant], items: Sequence[_studio.Item], order: Order) 
             chosen = {m: [i for i in items if i.id in named[m.name]] for m in mutants if m.name in named}
         seconds = {plate: sum(made.seconds) for plate, made in references.items()}
         # Where there was no time for a reference, nothing can be compared with it.
-        chosen = {m: _turns([i for i in plates if i.id in seconds], seconds) for m, plates in chosen.items()}
+        chosen = {
+            m: _turns(m, [i for i in plates if i.id in seconds], seconds) for m, plates in chosen.items()
+        }
         return Done(tuple(_try(chosen, references, folder, order)), seconds)
 
 
@@ -153,11 +160,18 @@ def _touched(
     return [item for item in items if changed.intersection(lines[item.id].get(mutant.module, ()))]
 
 
-def _turns(items: Sequence[_studio.Item], seconds: Mapping[str, float]) -> list[_studio.Item]:
-    """Sort plates so that the cheapest of every command comes first, and then the others."""
+def _turns(mutant: Mutant, items: Sequence[_studio.Item], seconds: Mapping[str, float]) -> list[_studio.Item]:
+    """Sort plates: the cheapest of every command and then the others, commands in another order each time.
+
+    So every command meets some mutants, though six plates are enough for each.
+    """
+
+    def lot(item: _studio.Item) -> str:
+        return hashlib.sha256(f"{mutant.name}\n{item.command}".encode()).hexdigest()
+
     ranked = sorted(items, key=lambda item: seconds[item.id])
     first = {item.command: item for item in reversed(ranked)}
-    return sorted(ranked, key=lambda item: first[item.command] != item)
+    return sorted(ranked, key=lambda item: (first[item.command] != item, lot(item)))
 
 
 def _try(
@@ -172,11 +186,9 @@ def _try(
         known = outcomes[mutant.name]
         left = _left(items, known, order)
         if left:
-            # Of every command that has none yet, one is tried whatever the others say.
-            least = len({item.command for item in items} - {i.command for i in items if i.id in known})
             enough = order.enough - sum(outcome.picture for outcome in known.values())
             steps = {item.id: _LEAST + _TIMES * sum(references[item.id].seconds) for item in left}
-            work = (mutant, left, folder, least, enough)
+            work = (mutant, left, folder, enough)
             jobs.append(process.Job(mutant.name, _mutants_work.attempt, work, steps))
     by_name = {mutant.name: mutant for mutant in chosen}
     for news in _shown(jobs, order, "trying mutants"):
@@ -216,7 +228,7 @@ def _shown(jobs: Sequence[process.Job], order: Order, doing: str) -> Iterator[pr
     """Do jobs, with a progress bar that goes on when one has ended."""
     bar = iter(_table.progress(jobs, doing))
     next(bar, None)
-    for news in process.run(jobs, order.jobs, order.until):
+    for news in process.run(jobs, order.jobs, order.until, _PRELOADED):
         yield news
         if news.last:
             next(bar, None)

@@ -56,19 +56,13 @@ def follow(items: Sequence[_studio.Item]) -> Iterator[dict[str, list[int]]]:
         yield {module: sorted(numbers) for module, numbers in found.items()}
 
 
-def attempt(
-    mutant: Mutant, items: Sequence[_studio.Item], folder: Path, least: int, enough: int
-) -> Iterator[Outcome]:
-    """Yield what comes of a mistake on each plate.
-
-    After the `least` first ones the others are skipped, once as many as are `enough` have noticed by the
-    picture.
-    """
+def attempt(mutant: Mutant, items: Sequence[_studio.Item], folder: Path, enough: int) -> Iterator[Outcome]:
+    """Yield what comes of a mistake on each plate, until `enough` pictures have noticed it."""
     _keep_nothing()
     hook.install(mutant)
     seen = 0
-    for number, item in enumerate(items):
-        if number >= least and seen >= enough:
+    for item in items:
+        if seen >= enough:
             yield Outcome(item.id, skipped=True)
             continue
         outcome = _tried(item, folder)

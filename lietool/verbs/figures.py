@@ -281,8 +281,7 @@ def mutants(
     NAMES are what names of mutants begin with, such as "so3.", or a module;
     without them it is the whole catalogue.  Each is tried by itself, in a process
     of its own, on the plates that execute what it changes, against the
-    plates without a mistake; at least one plate of each command, and further
-    ones until six pictures have noticed.  What was found is kept, so that a run that is
+    plates without a mistake, until six pictures have noticed.  What was found is kept, so that a run that is
     stopped goes on where it was.
     Ends with 5 if one that changes a plate is noticed by none, if one that moves
     something by 0.35 pixel is not noticed by a picture, or if the catalogue is

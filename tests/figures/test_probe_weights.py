@@ -215,3 +215,11 @@ def test_clouds_have_no_harmonic_weights(tmp_path):
     cloud = tmp_path / "c.xyz"
     cloud.write_text("0 0 0\n1 0 0\n0 1 0\n")
     assert "for a cloud; got harmonic" in refused(str(cloud), "--weights", "harmonic")
+
+
+def test_what_is_declared_is_what_is_meant():
+    # Twice, since a declaration is read without numpy.
+    from lietool.figures.ch7 import _probe_recipes, _probe_weights, probe
+
+    assert (probe._DISTANCES, probe._SMOOTH) == (_probe_weights.DISTANCES, _probe_weights.SMOOTH)
+    assert (probe._REACH, probe._HOLD) == (_probe_recipes.REACH, _probe_recipes.HOLD)

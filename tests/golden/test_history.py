@@ -33,3 +33,8 @@ def test_one_that_cannot_be_read_is_begun_anew(damaged):
 def test_what_others_add_to_an_entry_does_no_harm():
     text = json.dumps([{"reason": " two\n lines", "by": "somebody", "date": 3}])
     assert history.read({history.KEY: text}) == (history.Change("3", "unknown", "two lines"),)
+
+
+def test_a_long_change_is_cut():
+    (change,) = history.read({history.KEY: history.extended({}, NOW, "numbers " * 1000)})
+    assert len(change.what) < 410 and change.what.endswith("numbers …")

@@ -405,3 +405,11 @@ def test_quaternions_that_cancel_are_refused():
     A = np.stack([homogeneous(so3.rotation("x", angle)) for angle in (0.0, PI, 2.8)])
     with pytest.raises(ValueError, match=r"^blend\.polar_dual_quaternion: weights must be such"):
         blend.polar_dual_quaternion([1 - w + w * s, -w * s, w], A)
+
+
+@pytest.mark.parametrize("name", ["polar_quaternion", "polar_dual_quaternion"])
+def test_quaternions_go_round_the_shorter_way(name):
+    """From 170 to -170 degrees by way of 180: both quaternions have w > 0, one must change its sign."""
+    A = np.stack([homogeneous(so3.rotation("y", np.deg2rad(angle))) for angle in (170.0, -170.0)])
+    middle = blend.WAYS[name]([0.5, 0.5], A)
+    np.testing.assert_allclose(middle, homogeneous(so3.rotation("y", PI)), atol=1e-14)

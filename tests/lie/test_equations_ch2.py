@@ -18,7 +18,9 @@ def rng():
 
 def orthogonal(rng: np.random.Generator, n: int, count: int, sign: float) -> np.ndarray:
     """Random orthogonal matrices with the given determinant, made without our functions."""
-    Q, _ = np.linalg.qr(rng.normal(size=(count, n, n)))
+    Q, T = np.linalg.qr(rng.normal(size=(count, n, n)))
+    # As LAPACK leaves the signs, all turns of the plane would be by less than a quarter.
+    Q *= np.sign(np.diagonal(T, axis1=-2, axis2=-1))[:, None, :]
     Q[..., 0] *= (sign * np.sign(np.linalg.det(Q)))[:, None]
     return Q
 
