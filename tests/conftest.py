@@ -23,6 +23,8 @@ from lietool.verbs import _studio
 
 _REQUIRE = "LIETOOL_REQUIRE_RENDERER"
 _REQUIRE_BROWSER = "LIETOOL_REQUIRE_BROWSER"
+# Projects of others, which tests copy and run.
+collect_ignore_glob = ["data/*"]
 # What the caller set for other purposes: no test may pass or fail by it.
 _FOREIGN = ("GALLIUM_DRIVER", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH", "SOURCE_DATE_EPOCH")
 # Tests that take so long that each command's is one by itself.

@@ -1,7 +1,6 @@
 """Goldens of any project's tests: what one test asks for, compared or written, and all of a run together."""
 
 import platform
-import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -11,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-import lietool
 from lietool.golden import compare, compare_numbers, explain, folder, history, pixels, report, store, verdict
 from lietool.golden import picture as picture_
+from lietool.golden.asked import Tolerance, check_mask, place
 from lietool.golden.place import Place
 
 UPDATES = ("missing", "changed", "all")
-_NAME = re.compile(r"[^/\\:*?\"<>|\x00-\x1f]+(/[^/\\:*?\"<>|\x00-\x1f]+)*")
 
 
 class MismatchError(AssertionError):
@@ -67,76 +65,6 @@ class Record:
         }
 
 
-@dataclass(frozen=True)
-class Tolerance:
-    """How far one picture may be from its golden, and why it may be farther than others."""
-
-    limits: verdict.Limits = field(default_factory=verdict.Limits)
-    because: str = ""
-
-
-def tolerance(because: str, **limits: float | None) -> Tolerance:
-    """Return the tolerance of a picture.
-
-    Parameters
-    ----------
-    because : str
-        Why it is another than the usual one.
-    **limits : float, optional
-        Fields of `verdict.Limits`; None is the usual one.
-
-    Raises
-    ------
-    ValueError
-        If one is given without a reason or a reason without one, or it is no number that can be reached.
-    """
-    given = {name: value for name, value in limits.items() if value is not None}
-    if given and not because.strip():
-        raise ValueError(
-            f"lietool_golden.check: because must say why {', '.join(given)} differ from the usual; got none. "
-            "Write the reason"
-        )
-    if because.strip() and not given:
-        raise ValueError(
-            "lietool_golden.check: because must stand beside a tolerance; got none. Leave it out, or give "
-            "pixels, delta_e, lowpass or relative"
-        )
-    for name, value in given.items():
-        if not (np.isfinite(value) and value >= 0):
-            raise ValueError(f"lietool_golden.check: {name} must be finite and not negative; got {value}")
-    return Tolerance(verdict.Limits(**given), because.strip())  # type: ignore[arg-type]
-
-
-def place(root: Path, name: str, renderer: str | None) -> Place:
-    """Return where the golden of a name lies.
-
-    Parameters
-    ----------
-    root : Path
-        The folder of all goldens.
-    name : str
-        Words with slashes between them; the last names the file.
-    renderer : str, optional
-        A class of renderers that draws other pixels than the rest and has a golden of its own.
-
-    Raises
-    ------
-    ValueError
-        If the name is no name of a file below the folder.
-    """
-    for what, word in (("name", name), ("renderer", renderer)):
-        if word is None:
-            continue
-        parts = word.split("/")
-        if not _NAME.fullmatch(word) or {".", ".."} & set(parts) or any(p != p.strip(" ") for p in parts):
-            raise ValueError(
-                f"lietool_golden.check: {what} must be words with / between them, none of them . or .. and "
-                f'without any of \\ : * ? " < > |; got {word!r}. Choose another'
-            )
-    above, _, last = name.rpartition("/")
-    return Place(root, above, last + (f"@{renderer.replace('/', '-')}" if renderer else ""))
-
-
 def check(
     settings: Settings,
     test: str,
@@ -147,7 +75,7 @@ def check(
     mask: np.ndarray | None = None,
     ignore: Sequence[tuple[int, int, int, int]] = (),
     renderer: str | None = None,
-    tolerated: Tolerance = Tolerance(),
+    tolerated: Tolerance | None = None,
 ) -> Record:
     """Compare a picture and its numbers with their golden, or write it where that was asked for.
 
@@ -168,15 +96,16 @@ def check(
     ignore : sequence of (x0, y0, x1, y1)
         Boxes where pixels may be anything.
     renderer : str, optional
-        As of `place`.
-    tolerated : Tolerance
-        As `tolerance` makes it.
+        As of `asked.place`.
+    tolerated : Tolerance, optional
+        As `asked.tolerance` makes it.
 
     Returns
     -------
     Record
         It passes or not; nothing is raised for a difference.
     """
+    tolerated = tolerated or Tolerance()
     where = place(settings.root, name, renderer)
     shown = pixels.of(image)
     now = _provenance(name, test, renderer)
@@ -245,7 +174,7 @@ def _compared(
     mask: np.ndarray | None,
     ignore: Sequence[tuple[int, int, int, int]],
 ) -> tuple[store.Golden | None, _Found]:
-    _check_mask(mask, shown)
+    check_mask(mask, shown)
     try:
         golden = store.read(where)
     except store.GoldenError as error:
@@ -279,19 +208,6 @@ def _unreadable(error: store.GoldenError) -> str:
     if error.kind == "missing":
         remedy = "Look at the picture; if it is right, write it with --golden-update=missing"
     return f"{error}. {remedy}"
-
-
-def _check_mask(mask: np.ndarray | None, shown: np.ndarray) -> None:
-    if mask is None:
-        return
-    got = np.asarray(mask)
-    if got.dtype != np.bool_ or got.shape != shown.shape[:2]:
-        raise ValueError(
-            f"lietool_golden.check: mask must be bool of shape {shown.shape[:2]}, as the picture; got "
-            f"{got.dtype} of shape {got.shape}. True is where pixels may be anything"
-        )
-    if got.all():
-        raise ValueError("lietool_golden.check: mask must leave something to compare; got True everywhere")
 
 
 def _to_write(update: str, found: _Found, golden: store.Golden | None) -> str:
@@ -337,7 +253,7 @@ def _left(settings: Settings, where: Place, found: _Found, golden: store.Golden 
 
 def _provenance(name: str, test: str, renderer: str | None) -> dict[str, str]:
     versions = {}
-    for package in ("numpy", "pillow", "matplotlib", "moderngl"):
+    for package in ("numpy", "pillow", "matplotlib", "moderngl", "lietool"):
         try:
             versions[package] = metadata.version(package)
         except metadata.PackageNotFoundError:
@@ -349,7 +265,6 @@ def _provenance(name: str, test: str, renderer: str | None) -> dict[str, str]:
         "renderer": renderer or "any",
         "system": platform.platform(),
         **versions,
-        "lietool": lietool.__version__,
         "reason": f"written by {test}",
     }
 

@@ -40,7 +40,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--golden-unused",
         choices=_UNUSED,
         default="auto",
-        help="goldens that no test asks for: fail; ignore them; or auto, which tells of them after a whole run",
+        help="goldens that no test asks for: fail, ignore them, or (auto) tell of them after a whole run",
     )
     parser.addini(_FOLDER, "where goldens lie, from the root of the project", default="golden")
 
@@ -128,9 +128,9 @@ class Golden:
             If what is given cannot be compared.
         """
         __tracebackhide__ = True
-        from lietool.golden import checks
+        from lietool.golden import asked, checks
 
-        tolerated = checks.tolerance(
+        tolerated = asked.tolerance(
             because, pixels=pixels, delta_e=delta_e, lowpass=lowpass, relative=relative
         )
         named = _name_of(self._request.node.nodeid) if name is None else name

@@ -147,11 +147,16 @@ def test_another_size_a_torn_golden_and_half_of_one_are_told_apart(run, pytester
         ("check(picture(), name='a', lowpass=-1.0, because='so')", "lowpass must be finite and not negative"),
         ("check(picture(), name='a', mask=np.ones((2, 2), bool))", "mask must be bool of shape (40, 60)"),
         ("check(picture(), name='a', mask=np.ones((40, 60), bool))", "must leave something to compare"),
-        ("check(picture(), name='a', numbers={'x': [1j]})", "must be floats, integers, texts or truth values"),
+        (
+            "check(picture(), name='a', numbers={'x': [1j]})",
+            "must be floats, integers, texts or truth values",
+        ),
     ],
 )
 def test_what_cannot_be_compared_is_one_line_and_writes_nothing(run, pytester, call, said):
-    pytester.makepyfile(test_a=TEST.partition("def test")[0] + f"def test_a(lietool_golden): lietool_golden.{call}")
+    pytester.makepyfile(
+        test_a=TEST.partition("def test")[0] + f"def test_a(lietool_golden): lietool_golden.{call}"
+    )
     done = run("--golden-update=all")
     assert done.ret == 1 and said in done.said
     assert not list(pytester.path.rglob("golden/**/*.png"))
@@ -159,9 +164,7 @@ def test_what_cannot_be_compared_is_one_line_and_writes_nothing(run, pytester, c
 
 def test_a_test_that_checks_nothing_fails_and_one_that_is_skipped_does_not(run, pytester):
     pytester.makepyfile(
-        "import pytest\n"
-        "def test_a(lietool_golden): pass\n"
-        "def test_b(lietool_golden): pytest.skip('no')\n"
+        "import pytest\ndef test_a(lietool_golden): pass\ndef test_b(lietool_golden): pytest.skip('no')\n"
     )
     done = run()
     done.assert_outcomes(passed=1, errors=1, skipped=1)
@@ -181,7 +184,11 @@ def test_goldens_that_no_test_asks_for(run, pytester, accepted):
 
 
 def test_one_golden_for_two_tests_fails(run, pytester, accepted):
-    changed(accepted, "def test_square", "def test_other(lietool_golden):\n    test_square(lietool_golden)\n\ndef test_square")
+    changed(
+        accepted,
+        "def test_square",
+        "def test_other(lietool_golden):\n    test_square(lietool_golden)\n\ndef test_square",
+    )
     done = run()
     assert done.ret == 1 and "one golden for several checks: square: " in done.said
 
@@ -307,7 +314,11 @@ def test_sixteen_bits(lietool_golden):
     folder = pytester.path / "golden"
     with Image.open(folder / "floats.png") as one, Image.open(folder / "grey.png") as other:
         assert (np.asarray(one) == np.asarray(other)).all()
-    assert (golden(pytester, "clear").image == 255).all() and golden(pytester, "figure").image.shape == (40, 40, 3)
+    assert (golden(pytester, "clear").image == 255).all() and golden(pytester, "figure").image.shape == (
+        40,
+        40,
+        3,
+    )
     assert set(np.unique(golden(pytester, "truth").image)) == {0, 255}
 
 

@@ -1,4 +1,4 @@
-"""How a project keeps its pictures: `pytest` compares, `pytest --golden-update=missing` writes what is new."""
+"""How a project keeps its pictures: `pytest` compares, with `--golden-update=missing` it writes new ones."""
 
 import sys
 from pathlib import Path
