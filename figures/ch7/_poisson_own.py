@@ -10,6 +10,7 @@ from lietool.render import style
 
 from ._poisson_case import Case, Motions
 from ._probe_look import Look
+from ._probe_own import within
 
 # The frames of handles, over half the diagonal of the mesh's box.
 _FRAME = 0.28
@@ -36,6 +37,14 @@ def case(mesh: Path | None, handles: Path | None, paint: Path | None) -> Case | 
         pins = np.concatenate([pins, loose])
         many = f"{len(loose)} vertices that no face uses stay where they are"
         notes.append(many if len(loose) > 1 else "1 vertex that no face uses stays where it is")
+    if len(state.flat):
+        raise ValueError(
+            f"mesh {mesh} must have an area in every face; got none in face {state.flat[0]}"
+            f"{f' and {len(state.flat) - 1} more' if len(state.flat) > 1 else ''}. Remove them"
+        )
+    rest = np.tile(np.eye(4), (len(found.names), 1, 1))
+    rest[:, :3, 3] = found.centres
+    within(shape.vertices, "handle", found.names, rest, (found.A @ rest)[None])
     motions = Motions.of(found.centres, found.A, found.turns)
     size = 0.5 * float(np.linalg.norm(np.ptp(shape.vertices, axis=0)))
     look = Look((1.0, 0.5, 0.35), _FRAME * size, (style.BEFORE,), (style.AFTER,))
@@ -44,7 +53,8 @@ def case(mesh: Path | None, handles: Path | None, paint: Path | None) -> Case | 
         weights = painted.read(paint, len(shape.vertices))
         if weights.shape[1] != len(found.names):
             raise ValueError(
-                f"paint must be weights of {len(found.names)} handles, {', '.join(found.names)}; "
+                f"paint must be weights of {len(found.names)} handle{'s' * (len(found.names) > 1)}, "
+                f"{', '.join(found.names)}; "
                 f"got {weights.shape[1]} in {paint}. Add or leave out columns"
             )
     return Case("own", shape, look, pins, found.names, found.vertices, motions, weights, tuple(notes))

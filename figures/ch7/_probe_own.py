@@ -74,7 +74,7 @@ def probes(case: Case, file: Path | None, words: str, turn: float) -> Case:
     if turn != 0.0:
         raise ValueError(f"turn must be 0 for your own probes; got {turn:g}. Say it as degrees of a probe")
     found = probe_io.from_words(lines) if file is None else probe_io.read(file)
-    _within(case, found.names, found.rest, found.current[None])
+    within(case.mesh.vertices, "probe", found.names, found.rest, found.current[None])
     return replace(case, name="own", probes=found, painted=None, recipe=Recipe())
 
 
@@ -87,13 +87,12 @@ def poses(case: Case, file: Path | None) -> Case:
         raise ValueError(
             f"poses must be at most {_MOST_POSES} poses; got {len(found.frames)} in {file}. Leave some out"
         )
-    _within(case, case.probes.names, case.probes.rest, found.frames)
+    within(case.mesh.vertices, "probe", case.probes.names, case.probes.rest, found.frames)
     return replace(case, name="own", poses=found)
 
 
-def _within(case: Case, names: Sequence[str], rest: Array, now: Array) -> None:
-    """Refuse probes, at rest (k, 4, 4) or now (f, k, 4, 4), that are beyond measure beside the shape."""
-    V = case.mesh.vertices
+def within(V: Array, kind: str, names: Sequence[str], rest: Array, now: Array) -> None:
+    """Refuse frames, at rest (k, 4, 4) or now (f, k, 4, 4), that are beyond measure beside a shape (n, 3)."""
     size = half_diagonal(V)
     off = np.concatenate([rest[None], now])[..., :3, 3] - 0.5 * (V.min(axis=0) + V.max(axis=0))
     far = np.linalg.norm(off, axis=-1).max(axis=0) / size
@@ -101,10 +100,11 @@ def _within(case: Case, names: Sequence[str], rest: Array, now: Array) -> None:
     for name, away, factor in zip(names, far, stretch, strict=True):
         if away > _FARTHEST:
             raise ValueError(
-                f"probe {name} must be within {_FARTHEST:g} times the shape's size, {size:.3g}; got "
+                f"{kind} {name} must be within {_FARTHEST:g} times the shape's size, {size:.3g}; got "
                 f"{away:.3g} times it. Write lengths in the shape's unit"
             )
         if factor > _FARTHEST:
             raise ValueError(
-                f"probe {name} must stretch by at most {_FARTHEST:g}; got {factor:.3g}. Write a smaller scale"
+                f"{kind} {name} must stretch by at most {_FARTHEST:g}; got {factor:.3g}. "
+                "Write a smaller scale"
             )

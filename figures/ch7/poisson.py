@@ -60,7 +60,11 @@ def poisson(
     ] = "handles",
     weights: Annotated[
         Literal["harmonic", "biharmonic", "geodesic"],
-        Param("of the handles, between these and the pins", only=("example", "handles", "octopus")),
+        Param(
+            "of the handles, between these and the pins",
+            only=("example", "handles", "octopus"),
+            unless=("paint",),
+        ),
     ] = "harmonic",
     way: Annotated[
         Literal["phi-so", "phi-se", "alexa", "polar-quaternion", "dual-quaternion", "linear"],
@@ -74,14 +78,29 @@ def poisson(
     ] = "polar-quaternion",
     motion: Annotated[
         Literal["roll", "twist"],
-        Param("the octopus's arm is rolled up, or twisted about itself", only=_ARM),
+        Param("the octopus's arm is rolled up, or twisted about itself", only=_ARM, unless=("mesh",)),
     ] = "roll",
     turn: Annotated[
-        float, Param("angle by which the tip of the octopus's arm is turned", "deg", -720.0, 720.0, only=_ARM)
+        float,
+        Param(
+            "angle by which the tip of the octopus's arm is turned",
+            "deg",
+            -720.0,
+            720.0,
+            only=_ARM,
+            unless=("mesh",),
+        ),
     ] = 400.0,
     first: Annotated[
         float,
-        Param("angle of the edit in the upper row", "deg", -720.0, 720.0, only=("example", "table")),
+        Param(
+            "angle of the edit in the upper row",
+            "deg",
+            -720.0,
+            720.0,
+            only=("example", "table"),
+            unless=("mesh",),
+        ),
     ] = 170.0,
     t: Annotated[float, Param("how far the handles are on their way", low=0.0, high=1.0)] = 1.0,
     around: Annotated[

@@ -1,4 +1,4 @@
-"""`lietool figures accept --from review.json`: what was marked in a report becomes golden, and nothing else."""
+"""`lietool figures accept --from review.json`: what a reader of the report has marked, and nothing else."""
 
 import json
 from collections.abc import Mapping, Sequence

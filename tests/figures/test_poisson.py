@@ -213,8 +213,36 @@ class TestRefused:
         mesh = bar()
         own = files(tmp_path, mesh)
         np.savetxt(tmp_path / "w.txt", np.zeros((len(mesh.vertices), 2)))
-        with pytest.raises(ValueError, match="paint must be weights of 1 handles, top; got 2 in"):
+        with pytest.raises(ValueError, match="paint must be weights of 1 handle, top; got 2 in"):
             POISSON.draw(paint=tmp_path / "w.txt", **own)
+
+    def test_a_face_without_an_area(self, tmp_path):
+        mesh = bar()
+        flat = Mesh(mesh.vertices, np.concatenate([mesh.faces, [[0, 1, 1]], [[2, 2, 3]]]))
+        with pytest.raises(
+            ValueError, match=r"bar.ply must have an area in every face; got none in face \d+ and 1"
+        ):
+            POISSON.draw(**files(tmp_path, flat))
+
+    @pytest.mark.parametrize(
+        ("motion", "said"),
+        [
+            ({"scale": 1e90}, "handle top must stretch by at most"),
+            ({"translation": [0, 0, 1e9]}, "must be within"),
+        ],
+    )
+    def test_motions_beyond_measure(self, tmp_path, motion, said):
+        with pytest.raises(ValueError, match=said):
+            POISSON.draw(**files(tmp_path, bar(), **motion))
+
+    def test_options_that_have_no_part_beside_files(self, tmp_path):
+        own = POISSON.plate_params("B7.7") | files(tmp_path, bar())
+        named = {parameter.name: parameter for parameter in POISSON.parameters}
+        for example, names in (("octopus", ("motion", "turn")), ("table", ("motion", "turn", "first"))):
+            for name in names:
+                assert "mesh" in named[name].idle_because(own | {"example": example})
+        assert "paint" in named["weights"].idle_because(own | {"paint": tmp_path / "w.txt"})
+        assert not named["weights"].idle(own)
 
 
 class TestClose:
