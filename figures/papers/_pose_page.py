@@ -69,7 +69,8 @@ class Row:
 class Shown:
     """A shape, its keys, the ways through them, how many poses between them, and a moment.
 
-    `asked` is the largest ratio of stretches of a key, `meets` whether the ways pass through all of them.
+    `asked` is the largest ratio of stretches of a key, `meets` whether the ways pass through all of them,
+    `stand` (3, 3) turns what is upwards in the shape's file upwards on the page.
     """
 
     V: np.ndarray
@@ -81,6 +82,7 @@ class Shown:
     now: float
     asked: float
     meets: bool
+    stand: np.ndarray
 
     @property
     def step(self) -> float:
@@ -157,7 +159,7 @@ def _poses(s: Shown, row: Row) -> list[_Pose]:
         A = np.concatenate([pose.evaluate(row.path, between), A, pose.evaluate(row.path, [s.now])])
     poses = []
     for L, t, kind in zip(A[:, :3, :3], times, kinds, strict=True):
-        seen = few @ L.T @ axes.T
+        seen = few @ (s.stand @ L).T @ axes.T
         poses.append(_Pose(L, float(t), int(kind), seen.min(axis=0), seen.max(axis=0)))
     return poses
 
@@ -176,11 +178,11 @@ def _view(s: Shown, p: _Pose, scale: float, at: tuple[float, float]) -> scene.Vi
     camera = Camera(_DIRECTION, (0.0, 0.0, 0.0), box[3] / scale, _FOV)
     L = p.L
     inverted = float(np.linalg.det(L)) <= 0.0
-    X, F = (s.V - s.given.centre) @ L.T, s.F[:, ::-1] if inverted else s.F
+    X, F = (s.V - s.given.centre) @ (s.stand @ L).T, s.F[:, ::-1] if inverted else s.F
     # By the cofactors, which exist where the inverse does not.
     N = s.N @ np.stack([np.cross(L[1], L[2]), np.cross(L[2], L[0]), np.cross(L[0], L[1])]).T
     length = np.linalg.norm(N, axis=1, keepdims=True)
-    N = N / np.where(length > 0.0, length, 1.0)
+    N = (N / np.where(length > 0.0, length, 1.0)) @ s.stand.T
     fill, edge, width = (style.WRONG, style.INK, 1.6) if inverted else _LOOKS[p.kind]
     records = mesh_look.surface(X, F, fill, normals=N)
     return scene.View((*records, *mesh_look.outline(X, F, camera, edge, width)), camera, box)
@@ -248,7 +250,7 @@ def _ways(s: Shown) -> list[scene.View]:
 
 
 def _centre(s: Shown, A: np.ndarray) -> np.ndarray:
-    return A[:, :3, :3] @ s.given.centre + A[:, :3, 3]
+    return (A[:, :3, :3] @ s.given.centre + A[:, :3, 3]) @ s.stand.T
 
 
 def _outer(V: np.ndarray) -> np.ndarray:

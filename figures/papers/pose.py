@@ -16,6 +16,8 @@ from . import _pose_page as page
 _SOLIDS = {"duck": solids.duck, "animal": solids.animals, "cactus": solids.cactus, "octopus": solids.octopus}
 # Moments at which determinants are measured, and to how many digits what splines make of rounding is kept.
 _MOMENTS, _DIGITS = 601, 10
+# From the file's z or y upwards to z upwards.
+_UP = {"z": np.eye(3), "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}
 # Curves that pass keys by: they need not turn as far.
 _NEAR = ("b_spline_near", "bezier")
 
@@ -64,6 +66,7 @@ def pose(
     parametrisation: Annotated[Literal["phi_so", "phi_se"], Param("of the upper row")] = "phi_so",
     frames: Annotated[int, Param("poses shown between two keys", low=0, high=8)] = 2,
     t: Annotated[float, Param("a moment, 0 the first key and 1 the last", low=0.0, high=1.0)] = 0.9,
+    up: Annotated[Literal["z", "y"], Param("which axis of your mesh is drawn upwards", needs="mesh")] = "z",
 ) -> Drawing:
     """Pose: key transformations joined by a spline in a space of parameters.
 
@@ -114,7 +117,7 @@ def pose(
     span = given.times[[0, -1]]
     now = float(span[0] + t * (span[1] - span[0]))
     asked, meets = _ratio(given.A[:, :3, :3]), curve not in _NEAR
-    shown = page.Shown(V, body.faces, normals, given, tuple(rows), frames, now, asked, meets)
+    shown = page.Shown(V, body.faces, normals, given, tuple(rows), frames, now, asked, meets, _UP[up])
     A = deform_pose.evaluate(rows[0].path, min(max(now, span[0]), span[1]))
     moved = body.moved(V @ A[:3, :3].T + A[:3, 3])
     return Drawing(page.picture(shown), _numbers(given, rows, A), moved)

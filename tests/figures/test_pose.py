@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from lietool import figure, paths
 from lietool.mesh import surface_io
-from lietool.render.scene import Label
+from lietool.mesh.surface import Mesh
+from lietool.render.scene import Label, Surface
 
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
 
@@ -175,3 +176,17 @@ class TestFiles:
         path.write_text("v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n")
         with pytest.raises(ValueError, match="extent"):
             drawn(mesh=path)
+
+
+def test_a_mesh_may_lie_on_its_back(mesh, keys, tmp_path):
+    V, F = surface_io.read(mesh).vertices, surface_io.read(mesh).faces
+    lying = np.stack([V[:, 0], V[:, 2], -V[:, 1]], axis=1)
+    (tmp_path / "lying.ply").write_bytes(surface_io.encode(Mesh(lying, F), ".ply"))
+    seen = []
+    for file, up, axis in ((mesh, "z", [0, 0, 1]), (tmp_path / "lying.ply", "y", [0, 1, 0])):
+        given = keys({"key": [{}, {"axis": axis, "degrees": 200, "scale": 1.3}]}, f"{up}.json")
+        records = [r for view in drawn(mesh=file, keys=given, up=up).picture.views for r in view.records]
+        seen.append([r.vertices for r in records if isinstance(r, Surface)])
+    assert len(seen[0]) == len(seen[1]) > 6
+    for standing, stood in zip(*seen, strict=True):
+        assert stood == pytest.approx(standing, abs=1e-6)
