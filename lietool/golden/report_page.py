@@ -79,7 +79,7 @@ def _plate(entry: Entry) -> dict[str, Any]:
         "name": entry.name,
         "title": entry.title,
         "kind": entry.kind,
-        "word": entry.word,
+        "verdict": _verdict(entry),
         "messages": entry.messages,
         "thumb": _thumb(entry.actual or entry.expected),
         "pictures": list(_pictures(entry)),
@@ -98,6 +98,12 @@ def _plate(entry: Entry) -> dict[str, Any]:
         "acceptable": bool(entry.kind != PASSED and entry.accept and entry.digests[0]),
         "data": json.dumps(_data(entry)),
     }
+
+
+def _verdict(entry: Entry) -> str:
+    if entry.kind == CHANGED:
+        return "changed, within tolerance"
+    return entry.word if entry.kind == PASSED else f"failed: {entry.word}"
 
 
 def _data(entry: Entry) -> dict[str, Any]:
@@ -223,7 +229,7 @@ def _blob(blob: explain.Blob) -> dict[str, str]:
     return {
         "size": f"{x1 - x0} × {y1 - y0}",
         "at": f"({x0}, {y0})",
-        "says": f"{blob.pixels} px, dE {blob.delta_e:.1f}, SSIM {blob.ssim:.3f}",
+        "says": f"{blob.pixels} px, dE {blob.delta_e:.1f}, SSIM {blob.ssim:.3f}".replace("-", "−"),
     }
 
 

@@ -1,4 +1,4 @@
-"""`lietool figures accept --from review.json`: what was marked in a report becomes golden, and nothing else."""
+"""`lietool figures accept --from review.json`: what was marked in a report becomes golden, nothing else."""
 
 import json
 from collections.abc import Mapping, Sequence
