@@ -87,8 +87,11 @@ class Browser:
 
     def pixel(self, selector: str, x: int, y: int) -> list[int]:
         """A pixel of a canvas on the page."""
+        # From a copy: the page's own canvases are not for reading.
         code = (
-            "return [...$(arguments[0]).getContext('2d').getImageData(arguments[1], arguments[2], 1, 1).data]"
+            "const copy = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });"
+            " copy.drawImage($(arguments[0]), -arguments[1], -arguments[2]);"
+            " return [...copy.getImageData(0, 0, 1, 1).data]"
         )
         found = self.js(code, selector, x, y)
         assert isinstance(found, list)
@@ -202,7 +205,7 @@ def test_the_swipe_shows_one_left_and_the_other_right(toy: Browser) -> None:
 
     assert toy.mode == "swipe" and cut() == pytest.approx(200, abs=2)
     toy.press("]]]]]")
-    assert cut() == pytest.approx(240, abs=2)
+    assert cut() == pytest.approx(240, abs=4)
     stage = toy.driver.find_element(By.CSS_SELECTOR, ".pane.first")
     ActionChains(toy.driver).move_to_element(stage).click_and_hold().move_by_offset(
         -200, 30
@@ -272,20 +275,20 @@ def test_the_map_of_similarity_lies_over_the_golden(toy: Browser) -> None:
 
 def test_the_loupe_tells_both_colours_and_their_distance(toy: Browser) -> None:
     toy.press("s")
-    toy.press(Keys.ARROW_RIGHT)
+    toy.press(Keys.ARROW_LEFT)
     said = toy.js("return $('.point').textContent")
     found = compare.images(picture(1), wrong_one())
     assert found.largest_delta_e_at is not None
     x, y = found.largest_delta_e_at
-    far = compare.delta_e76(picture(1)[y, x + 1], wrong_one()[y, x + 1])
-    assert str(said).startswith(f"({x + 1}, {y})") and f"dE {float(far):.1f}" in str(said)
-    toy.press(Keys.SHIFT + Keys.ARROW_DOWN)
-    toy.wait(f"$('.point').textContent.startsWith('({x + 1}, {y + 10})')")
+    far = compare.delta_e76(picture(1)[y, x - 1], wrong_one()[y, x - 1])
+    assert str(said).startswith(f"({x - 1}, {y})") and f"dE {float(far):.1f}" in str(said)
+    ActionChains(toy.driver).key_down(Keys.SHIFT).send_keys(Keys.ARROW_DOWN).key_up(Keys.SHIFT).perform()
+    toy.wait(f"$('.point').textContent.startsWith('({x - 1}, {y + 10})')")
     colours = toy.js("return $$('.loupe figcaption span').map((s) => s.textContent)")
     assert isinstance(colours, list)
-    assert colours[0] == "#" + "".join(f"{v:02x}" for v in picture(1)[y + 10, x + 1])
+    assert colours[0] == "#" + "".join(f"{v:02x}" for v in picture(1)[y + 10, x - 1])
     # The middle of each lens is the pixel itself.
-    assert toy.pixel(".loupe [data-part=expected]", 68, 68) == picture(1)[y + 10, x + 1].tolist()
+    assert toy.pixel(".loupe [data-part=expected]", 68, 68) == picture(1)[y + 10, x - 1].tolist()
 
 
 def test_places_that_differ_are_boxed_and_gone_to(toy: Browser) -> None:
@@ -333,7 +336,12 @@ def test_the_filter_shows_one_kind_and_search_finds(toy: Browser) -> None:
         assert toy.listed == [name] and toy.ready() == name
     toy.press("f")
     assert toy.listed == [FAILED, CHANGED, PASSED]
-    for text, found in (("waves", [FAILED, CHANGED]), ("still", [PASSED]), ("vertices", [FAILED]), ("q", [])):
+    for text, found in (
+        ("waves", [FAILED, CHANGED]),
+        ("still", [PASSED]),
+        ("vertices", [FAILED]),
+        ("zz", []),
+    ):
         toy.press("/")
         toy.press(text)
         assert toy.listed == found
@@ -484,6 +492,15 @@ def everything(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_all_our_plates_are_on_one_page_that_opens_at_once(browser: Browser, everything: Path) -> None:
     assert everything.stat().st_size < 30e6
+    browser.show(400)
+    browser.open(everything.as_uri())
+    browser.wait("seen($('.list'))")
+    outside = browser.js(
+        "const edge = document.documentElement.clientWidth;"
+        " return $$('.rail *').filter((e) => seen(e) && e.getBoundingClientRect().right > edge)"
+        ".map((e) => e.outerHTML.slice(0, 80))"
+    )
+    assert outside == []
     browser.show()
     browser.complaints()
     start = time.perf_counter()

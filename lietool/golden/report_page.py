@@ -170,7 +170,7 @@ def _bars(entry: Entry) -> Iterator[dict[str, Any]]:
             if found.headroom_pixels >= 0
             else f"{-found.headroom_pixels} too many",
             found.largest_delta_e_at,
-            f"largest dE {found.largest_delta_e:.1f}",
+            f"largest dE {found.largest_delta_e:.1f}" if found.differing else "",
         )
         channel = f" of {found.lowpass_channel}" if found.lowpass_channel else ""
         yield _bar(
@@ -182,7 +182,7 @@ def _bars(entry: Entry) -> Iterator[dict[str, Any]]:
             if not found.too_wide
             else f"{-found.headroom_lowpass:.2f} too much",
             found.lowpass_at,
-            f"{_signed(found.lowpass)} levels{channel}",
+            f"{_signed(found.lowpass)} levels{channel}" if found.differing else "",
         )
     entry_name, used = entry.nearest
     if entry.counted:
@@ -217,7 +217,7 @@ def _share(used: float) -> str:
 
 
 def _signed(value: float) -> str:
-    return f"{value:+.2f}".replace("-", "−")
+    return "0" if value == 0 else f"{value:+.2f}".replace("-", "−")
 
 
 def _more(count: int, what: str) -> str:
@@ -269,6 +269,7 @@ def _provenance(golden: Mapping[str, str], now: Mapping[str, str]) -> Iterator[d
             "key": key,
             "golden": pair[0] or "–",
             "now": pair[1] or "–",
-            "same": pair[0] == pair[1],
+            # Why it was accepted is a golden's alone.
+            "same": pair[0] == pair[1] or (key == "reason" and not pair[1]),
             "differs": differs,
         }

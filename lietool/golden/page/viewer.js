@@ -122,8 +122,7 @@ const viewer = (() => {
 
   const hex = (c) => (c ? `#${c.map((v) => v.toString(16).padStart(2, "0")).join("")}` : "");
   const magnify = () => {
-    if (!view.point) view.point = about?.worst ?? [size[0] >> 1, size[1] >> 1];
-    const [x, y] = view.point, half = SPAN >> 1;
+    const [x, y] = view.point ?? [size[0] >> 1, size[1] >> 1], half = SPAN >> 1;
     const source = { ...layer, actual: layer.actual.hidden && !pixels.actual ? layer.expected : layer.actual };
     for (const canvas of all("canvas", loupe)) {
       const context = canvas.getContext("2d"), unit = canvas.width / SPAN, part = canvas.dataset.part;
@@ -148,9 +147,12 @@ const viewer = (() => {
     }
     for (const part of Object.keys(says)) one(`[data-part=${part}] + figcaption span`, loupe).textContent = says[part];
     one(".point", loupe).textContent = text;
-    for (const world of worlds) {
-      const dot = one(".dot", world);
-      if (dot) for (const [key, value] of Object.entries({ x: x - 0.5, y: y - 0.5 })) dot.setAttribute(key, value);
+    // About the pixel, and never too small to be seen; none where nobody has pointed yet.
+    const reach = Math.max(0.5, 5 / scale());
+    for (const dot of all(".dot", stage)) {
+      const box = { x: x + 0.5 - reach, y: y + 0.5 - reach, width: 2 * reach, height: 2 * reach };
+      for (const [key, value] of Object.entries(box)) dot.setAttribute(key, value);
+      dot.style.display = view.point ? "" : "none";
     }
   };
   const move = (dx, dy) => {
@@ -188,9 +190,8 @@ const viewer = (() => {
     else layer.expected.after(layer.actual);
     layer.actual.style.visibility = "";
     panes[0].classList.remove("second-shown");
-    const only = pixels.expected ? "golden" : "now";
     const tags = { swipe: ["expected", "actual"], side: ["expected", ""], difference: ["difference", ""], ssim: ["1 − SSIM over expected", ""] };
-    const [left, right] = tags[now] ?? [available.length ? "" : about?.only ?? only, ""];
+    const [left, right] = tags[now] ?? [available.length ? "" : about.only, ""];
     one(".left", panes[0]).textContent = left;
     one(".right", panes[0]).textContent = right;
     one(".left", panes[1]).textContent = "actual";
@@ -234,7 +235,6 @@ const viewer = (() => {
       }));
       const dot = document.createElementNS(name, "rect");
       dot.setAttribute("class", "dot");
-      for (const key of ["width", "height"]) dot.setAttribute(key, 2);
       svg.append(dot);
     }
   };
