@@ -101,21 +101,31 @@ const viewer = (() => {
     const next = by > 0 ? STEPS.find((step) => step > s * 1.001) : STEPS.findLast((step) => step < s * 0.999);
     zoom(next ?? s, at);
   };
-  const go = ([x0, y0, x1, y1]) => {
+  const go = ([x0, y0, x1, y1], point) => {
     const { clientWidth: width, clientHeight: height } = panes[0];
     const room = Math.min(width / (x1 - x0), height / (y1 - y0)) / 2.5;
-    view.scale = clamp(room, Math.min(2, 12), 12);
+    view.scale = clamp(room, 2, 12);
     if (view.scale <= fit()) view.scale = null;
     [view.x, view.y] = [(x0 + x1) / 2, (y0 + y1) / 2];
-    view.point = [Math.floor(view.x), Math.floor(view.y)];
+    view.point = point ?? [Math.floor(view.x), Math.floor(view.y)];
     layout();
+  };
+  // Within a box, where the loupe has most to show.
+  const strongest = ([x0, y0, x1, y1]) => {
+    let best = null, most = 0;
+    for (let y = y0; y < y1; y++) for (let x = x0; x < x1; x++) {
+      const a = colour(pixels.expected, x, y), b = colour(pixels.actual, x, y);
+      const off = a && b ? Math.abs(a[0] - b[0]) + Math.abs(a[1] - b[1]) + Math.abs(a[2] - b[2]) : 0;
+      if (off > most) [best, most] = [[x, y], off];
+    }
+    return best;
   };
   const place = (index) => {
     const { blobs = [] } = about ?? {};
     if (!blobs.length) return;
     view.place = (index + blobs.length) % blobs.length;
     for (const world of worlds) all(".blob", world).forEach((box, i) => box.classList.toggle("here", i === view.place));
-    go(blobs[view.place]);
+    go(blobs[view.place], strongest(blobs[view.place]));
   };
 
   // ---- the loupe ----
