@@ -1,5 +1,6 @@
 """`lietool figures ...` on a toy project: each verb, each message, each exit code, by running it."""
 
+import html
 import json
 import os
 import re
@@ -17,6 +18,8 @@ from lietool import figure, paths
 from lietool.golden import history, store
 from lietool.verbs import _studio
 from lietool.verbs.figures import command
+
+_DIGESTS = ("picture", "numbers")
 
 FILE = '''
 """Toy."""
@@ -489,6 +492,114 @@ def test_accept_removes_labels_that_no_golden_uses(run, accepted, studio):
 def test_accept_in_a_folder_that_cannot_be_written_is_one_line(run, tmp_path):
     (tmp_path / "golden").write_bytes(b"")
     assert "cannot be written" in run("accept T1 --reason r", 2)
+
+
+def marks(page):
+    """The review that somebody would hand in who finds everything right."""
+    about = [json.loads(html.unescape(x)) for x in re.findall(r'data-about="([^"]*)"', page.read_text())]
+    return [
+        {"plate": each["accept"].split()[-1], "reason": "a new look", **{k: each[k] for k in _DIGESTS}}
+        for each in about
+    ]
+
+
+def review(tmp_path, listed, **more):
+    path = tmp_path / "review.json"
+    path.write_text(json.dumps({"review": 1, "accept": listed, **more}))
+    return path
+
+
+def test_report_shows_all_and_ends_as_verify_does(run, accepted, studio, tmp_path):
+    assert run("report").startswith("out/report.html: 0 failed, 0 changed, 2 passed")
+    before = files(accepted)
+    studio.change = lambda image: 255 - image
+    assert "page.html: 2 failed" in run("report -o page.html", 5)
+    text = (tmp_path / "page.html").read_text()
+    assert "picture differs" in text and "llvmpipe (LLVM 15)" in text and "Three dots" in text
+    assert files(accepted) == before
+    studio.change, studio.trouble = None, "no OpenGL renderer"
+    assert "renderer: no OpenGL renderer" in run("report -o page.html", 4)
+    assert "no OpenGL renderer" in (tmp_path / "page.html").read_text()
+
+
+def test_report_with_goldens_missing_stray_or_undrawn(run, accepted, studio, tmp_path):
+    (accepted / "ch9" / "T1.png").unlink()
+    (accepted / "ch9" / "T1.json").unlink()
+    (accepted / "ch9" / "stray.png").write_bytes(b"")
+    assert "stray.png belongs to no plate" in run("report", 3)
+    studio.paint = lambda *a, **k: 1 // 0
+    assert "2 failed" in run("report T1 T1b", 5)
+    assert "cannot be drawn any more: ZeroDivisionError" in (tmp_path / "out/report.html").read_text()
+
+
+def test_report_where_it_cannot_be_written_is_one_line(run, tmp_path):
+    (tmp_path / "file").write_text("")
+    for path in ("file/report.html", "figures"):
+        said = run(f"report -o {path}", 2)
+        assert said.startswith("Error: ") and len(said.splitlines()) == 1
+
+
+def test_a_review_is_accepted_with_its_reasons(run, accepted, studio, tmp_path):
+    studio.change = lambda image: 255 - image
+    studio.numbers = {"more": 1.0}
+    run("report", 5)
+    found = marks(tmp_path / "out/report.html")
+    found[1]["reason"] = " another   reason "
+    review(tmp_path, found)
+    assert "T1b: " in run("accept --from review.json")
+    run("verify")
+    reasons = [store.provenance(store.Place(accepted, "ch9", i))["reason"] for i in ("T1", "T1b")]
+    assert reasons == ["a new look", "another reason"]
+
+
+@pytest.mark.parametrize("other", ["picture", "numbers"])
+def test_a_review_of_anything_else_is_refused_whole(run, accepted, studio, tmp_path, other):
+    studio.change = lambda image: 255 - image
+    run("report", 5)
+    review(tmp_path, marks(tmp_path / "out/report.html"))
+    before = files(accepted)
+    if other == "picture":
+        studio.change = lambda image: 254 - image // 2 if image[0, 0, 0] % 2 else 253 - image // 2
+    else:
+        studio.numbers = {"more": 1.0}
+    said = run("accept --from review.json", 5)
+    assert f"T1: {other} drawn now" in said and "nothing was accepted" in said
+    assert len(said.splitlines()) == 1 and files(accepted) == before
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "is not the review.json"),
+        ("[]", "has no list `accept`"),
+        ('{"review": 2, "accept": []}', "has no list `accept`"),
+        ('{"review": 1, "accept": []}', "marks nothing"),
+        ('{"review": 1, "accept": [3]}', "mark 1 needs texts plate, reason, picture, numbers"),
+        ('{"review": 1, "accept": [{"plate": "T1", "reason": 3}]}', "mark 1 needs texts"),
+        ("[" * 100_000, "is not the review.json"),
+    ],
+)
+def test_a_review_that_is_none_is_one_line(run, accepted, tmp_path, text, says):
+    (tmp_path / "review.json").write_text(text)
+    said = run("accept --from review.json", 2)
+    assert says in said and len(said.splitlines()) == 1
+
+
+def test_a_review_with_wrong_marks_is_one_line(run, accepted, tmp_path):
+    run("report")
+    first, second = marks(tmp_path / "out/report.html")
+    wrong = {
+        "T1 has no reason": [{**first, "reason": "  "}],
+        "there is no plate 'T9' here": [first, {**second, "plate": "T9"}],
+        "T1 is marked twice": [first, first],
+    }
+    before = files(accepted)
+    for says, listed in wrong.items():
+        review(tmp_path, listed)
+        said = run("accept --from review.json", 2)
+        assert says in said and len(said.splitlines()) == 1, said
+    assert "Leave out the others" in run("accept T1 --from review.json", 2)
+    assert files(accepted) == before
 
 
 def test_the_commit_is_recorded_where_there_is_one(tmp_path):

@@ -79,7 +79,7 @@ def _plate(entry: Entry) -> dict[str, Any]:
         "name": entry.name,
         "title": entry.title,
         "kind": entry.kind,
-        "word": entry.word,
+        "verdict": _verdict(entry),
         "messages": entry.messages,
         "thumb": _thumb(entry.actual or entry.expected),
         "pictures": list(_pictures(entry)),
@@ -98,6 +98,12 @@ def _plate(entry: Entry) -> dict[str, Any]:
         "acceptable": bool(entry.kind != PASSED and entry.accept and entry.digests[0]),
         "data": json.dumps(_data(entry)),
     }
+
+
+def _verdict(entry: Entry) -> str:
+    if entry.kind == CHANGED:
+        return "changed, within tolerance"
+    return entry.word if entry.kind == PASSED else f"failed: {entry.word}"
 
 
 def _data(entry: Entry) -> dict[str, Any]:
@@ -164,7 +170,7 @@ def _bars(entry: Entry) -> Iterator[dict[str, Any]]:
             if found.headroom_pixels >= 0
             else f"{-found.headroom_pixels} too many",
             found.largest_delta_e_at,
-            f"largest dE {found.largest_delta_e:.1f}",
+            f"largest dE {found.largest_delta_e:.1f}" if found.differing else "",
         )
         channel = f" of {found.lowpass_channel}" if found.lowpass_channel else ""
         yield _bar(
@@ -176,7 +182,7 @@ def _bars(entry: Entry) -> Iterator[dict[str, Any]]:
             if not found.too_wide
             else f"{-found.headroom_lowpass:.2f} too much",
             found.lowpass_at,
-            f"{_signed(found.lowpass)} levels{channel}",
+            f"{_signed(found.lowpass)} levels{channel}" if found.differing else "",
         )
     entry_name, used = entry.nearest
     if entry.counted:
@@ -211,7 +217,7 @@ def _share(used: float) -> str:
 
 
 def _signed(value: float) -> str:
-    return f"{value:+.2f}".replace("-", "−")
+    return "0" if value == 0 else f"{value:+.2f}".replace("-", "−")
 
 
 def _more(count: int, what: str) -> str:
@@ -223,7 +229,7 @@ def _blob(blob: explain.Blob) -> dict[str, str]:
     return {
         "size": f"{x1 - x0} × {y1 - y0}",
         "at": f"({x0}, {y0})",
-        "says": f"{blob.pixels} px, dE {blob.delta_e:.1f}, SSIM {blob.ssim:.3f}",
+        "says": f"{blob.pixels} px, dE {blob.delta_e:.1f}, SSIM {blob.ssim:.3f}".replace("-", "−"),
     }
 
 
@@ -263,6 +269,7 @@ def _provenance(golden: Mapping[str, str], now: Mapping[str, str]) -> Iterator[d
             "key": key,
             "golden": pair[0] or "–",
             "now": pair[1] or "–",
-            "same": pair[0] == pair[1],
+            # Why it was accepted is a golden's alone.
+            "same": pair[0] == pair[1] or (key == "reason" and not pair[1]),
             "differs": differs,
         }

@@ -71,6 +71,8 @@ def run(
     # Before minutes of drawing, not after them.
     if path.is_dir():
         raise _studio.Stop(2, f"{path} is a folder. Name a file with -o, such as {path / 'report.html'}")
+    with _studio.writing(str(path)):
+        path.parent.mkdir(parents=True, exist_ok=True)
     general = [verdict.Finding("renderer", studio.trouble)] if studio.trouble else []
     work = partial(_judged, studio=studio if jobs < 2 else None)
     judged = list(_jobs.each(work, items, jobs, "comparing"))

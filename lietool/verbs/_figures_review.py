@@ -1,4 +1,4 @@
-"""`lietool figures accept --from review.json`: what a reader of the report has marked, and nothing else."""
+"""`lietool figures accept --from review.json`: what was marked in a report becomes golden, nothing else."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -79,7 +79,7 @@ def run(path: Path, studio: _studio.Studio) -> None:
         drawn now is not what was reviewed; then nothing is accepted.
     """
     marks = read(path)
-    known = {item.id: item for item in _studio.items(everything=True)}
+    known = {item.id: item for item in _studio.items()}
     if strange := [name for name in marks if name not in known]:
         raise _studio.Stop(
             2, f"{path}: there is no plate {', '.join(map(repr, strange))} here. See `lietool figures list`"

@@ -101,29 +101,38 @@ const viewer = (() => {
     const next = by > 0 ? STEPS.find((step) => step > s * 1.001) : STEPS.findLast((step) => step < s * 0.999);
     zoom(next ?? s, at);
   };
-  const go = ([x0, y0, x1, y1]) => {
+  const go = ([x0, y0, x1, y1], point) => {
     const { clientWidth: width, clientHeight: height } = panes[0];
     const room = Math.min(width / (x1 - x0), height / (y1 - y0)) / 2.5;
-    view.scale = clamp(room, Math.min(2, 12), 12);
+    view.scale = clamp(room, 2, 12);
     if (view.scale <= fit()) view.scale = null;
     [view.x, view.y] = [(x0 + x1) / 2, (y0 + y1) / 2];
-    view.point = [Math.floor(view.x), Math.floor(view.y)];
+    view.point = point ?? [Math.floor(view.x), Math.floor(view.y)];
     layout();
+  };
+  // Within a box, where the loupe has most to show.
+  const strongest = ([x0, y0, x1, y1]) => {
+    let best = null, most = 0;
+    for (let y = y0; y < y1; y++) for (let x = x0; x < x1; x++) {
+      const a = colour(pixels.expected, x, y), b = colour(pixels.actual, x, y);
+      const off = a && b ? Math.abs(a[0] - b[0]) + Math.abs(a[1] - b[1]) + Math.abs(a[2] - b[2]) : 0;
+      if (off > most) [best, most] = [[x, y], off];
+    }
+    return best;
   };
   const place = (index) => {
     const { blobs = [] } = about ?? {};
     if (!blobs.length) return;
     view.place = (index + blobs.length) % blobs.length;
     for (const world of worlds) all(".blob", world).forEach((box, i) => box.classList.toggle("here", i === view.place));
-    go(blobs[view.place]);
+    go(blobs[view.place], strongest(blobs[view.place]));
   };
 
   // ---- the loupe ----
 
   const hex = (c) => (c ? `#${c.map((v) => v.toString(16).padStart(2, "0")).join("")}` : "");
   const magnify = () => {
-    if (!view.point) view.point = about?.worst ?? [size[0] >> 1, size[1] >> 1];
-    const [x, y] = view.point, half = SPAN >> 1;
+    const [x, y] = view.point ?? [size[0] >> 1, size[1] >> 1], half = SPAN >> 1;
     const source = { ...layer, actual: layer.actual.hidden && !pixels.actual ? layer.expected : layer.actual };
     for (const canvas of all("canvas", loupe)) {
       const context = canvas.getContext("2d"), unit = canvas.width / SPAN, part = canvas.dataset.part;
@@ -148,9 +157,12 @@ const viewer = (() => {
     }
     for (const part of Object.keys(says)) one(`[data-part=${part}] + figcaption span`, loupe).textContent = says[part];
     one(".point", loupe).textContent = text;
-    for (const world of worlds) {
-      const dot = one(".dot", world);
-      if (dot) for (const [key, value] of Object.entries({ x: x - 0.5, y: y - 0.5 })) dot.setAttribute(key, value);
+    // About the pixel, and never too small to be seen; none where nobody has pointed yet.
+    const reach = Math.max(0.5, 5 / scale());
+    for (const dot of all(".dot", stage)) {
+      const box = { x: x + 0.5 - reach, y: y + 0.5 - reach, width: 2 * reach, height: 2 * reach };
+      for (const [key, value] of Object.entries(box)) dot.setAttribute(key, value);
+      dot.style.display = view.point ? "" : "none";
     }
   };
   const move = (dx, dy) => {
@@ -188,9 +200,8 @@ const viewer = (() => {
     else layer.expected.after(layer.actual);
     layer.actual.style.visibility = "";
     panes[0].classList.remove("second-shown");
-    const only = pixels.expected ? "golden" : "now";
     const tags = { swipe: ["expected", "actual"], side: ["expected", ""], difference: ["difference", ""], ssim: ["1 − SSIM over expected", ""] };
-    const [left, right] = tags[now] ?? [available.length ? "" : about?.only ?? only, ""];
+    const [left, right] = tags[now] ?? [available.length ? "" : about.only, ""];
     one(".left", panes[0]).textContent = left;
     one(".right", panes[0]).textContent = right;
     one(".left", panes[1]).textContent = "actual";
@@ -234,7 +245,6 @@ const viewer = (() => {
       }));
       const dot = document.createElementNS(name, "rect");
       dot.setAttribute("class", "dot");
-      for (const key of ["width", "height"]) dot.setAttribute(key, 2);
       svg.append(dot);
     }
   };
