@@ -71,10 +71,11 @@ def _case(
         except ValueError as error:
             raise ValueError(f"cage {cage}: {str(error).removeprefix('cage: ')}") from None
     now = None if to is None else _moved(rest, cage, to)
-    before, dots = style.BEFORE, 0.0
+    (before, after), dots = look_.own(mesh), 0.0
     if not len(mesh.faces):
-        dots, before = float(np.clip(480.0 / np.sqrt(len(mesh.vertices)), *_DOTS)), style.BEFORE_EDGE
-    look = look_.Look((1.0, 0.5, 0.35), 0.33 * size, (before,), (style.AFTER,), dots=dots)
+        dots = float(np.clip(480.0 / np.sqrt(len(mesh.vertices)), *_DOTS))
+        before, after = look_.own(mesh, style.BEFORE_EDGE)
+    look = look_.Look((1.0, 0.5, 0.35), 0.33 * size, (before,), (after,), dots=dots)
     spine, shown = _spine(rest.vertices), _front(rest, look.direction)
     found = case_.Case("own", mesh, rest.vertices, rest.faces, look, spine, now, shown)
     outside = found.outside

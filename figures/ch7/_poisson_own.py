@@ -6,10 +6,10 @@ import numpy as np
 
 from lietool.deform import handle_io, painted
 from lietool.mesh import surface, surface_io
-from lietool.render import style
 
 from ._poisson_case import Case, Motions
 from ._probe_look import Look
+from ._probe_look import own as coloured
 from ._probe_own import within
 
 # The frames of handles, over half the diagonal of the mesh's box.
@@ -47,7 +47,8 @@ def case(mesh: Path | None, handles: Path | None, paint: Path | None) -> Case | 
     within(shape.vertices, "handle", found.names, rest, (found.A @ rest)[None])
     motions = Motions.of(found.centres, found.A, found.turns)
     size = 0.5 * float(np.linalg.norm(np.ptp(shape.vertices, axis=0)))
-    look = Look((1.0, 0.5, 0.35), _FRAME * size, (style.BEFORE,), (style.AFTER,))
+    before, after = coloured(shape)
+    look = Look((1.0, 0.5, 0.35), _FRAME * size, (before,), (after,))
     weights = None
     if paint is not None:
         weights = painted.read(paint, len(shape.vertices))

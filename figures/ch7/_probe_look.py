@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lietool.mesh import cut, solids
+from lietool.mesh.surface import Mesh
 from lietool.render import mesh_lines, mesh_look, style
 from lietool.render.camera import Camera
 from lietool.render.scene import Record
@@ -63,6 +64,16 @@ def by_part(F: Index, function: Array, part: Index, count: int) -> Patches:
     owner = made.carry(part.astype(float)).round().astype(np.intp)
     groups = [f[owner[f[:, 0]] == k] for f in (made.above, made.below) for k in range(count)]
     return Patches(tuple(groups), (made,))
+
+
+def own(mesh: Mesh, before: Color = style.BEFORE) -> tuple[Color, Color]:
+    """Return the colours of a user's shape at rest and moved: its own where its vertices have them."""
+    if mesh.colours is None:
+        return before, style.AFTER
+    levels = np.clip(mesh.colours[:, :3], 0.0, 1.0)
+    light = np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
+    rgba = np.column_stack([light, np.ones(len(light))])
+    return rgba, rgba
 
 
 @dataclass(frozen=True, eq=False)

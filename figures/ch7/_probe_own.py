@@ -15,6 +15,7 @@ from lietool.render import style
 
 from ._probe_case import Case, Recipe
 from ._probe_look import Look
+from ._probe_look import own as coloured
 
 Array = NDArray[np.float64]
 
@@ -38,9 +39,10 @@ def shape(path: Path, turn: float) -> Case:
         raise ValueError(
             f"shape {path} must have an extent above {1.0 / topology.LARGEST:g}; got {got}. Check the file"
         )
-    before, after, dots = style.BEFORE, style.AFTER, 0.0
+    (before, after), dots = coloured(mesh), 0.0
     if not len(mesh.faces):
-        dots, before = float(np.clip(480.0 / np.sqrt(len(mesh.vertices)), *_DOTS)), style.BEFORE_EDGE
+        dots = float(np.clip(480.0 / np.sqrt(len(mesh.vertices)), *_DOTS))
+        before, after = coloured(mesh, style.BEFORE_EDGE)
     look = Look((1.0, 0.5, 0.35), 0.33 * size, (before,), (after,), dots=dots)
     return Case("own", mesh, _two(low, high, turn), look, Recipe())
 

@@ -175,6 +175,18 @@ class TestOwn:
         assert done.returncode == 0, done.stderr
         assert len(surface_io.read(bar.with_name(f"out{ending}")).faces) == 64
 
+    def test_its_own_colours_are_drawn(self, bar):
+        light = ((0.2 + 0.055) / 1.055) ** 2.4
+        drawn = [
+            r.color
+            for view in PROBE.draw(shape=bar).picture.views
+            for r in view.records
+            if isinstance(r, Surface) and isinstance(r.color, np.ndarray)
+        ]
+        assert len(drawn) == 2
+        for colors in drawn:
+            assert colors[:, :3] == pytest.approx(light, abs=1e-3) and (colors[:, 3] == 1.0).all()
+
     def test_a_cloud(self, tmp_path):
         points = np.random.default_rng(2).normal(size=(200, 3)) * (1.0, 0.5, 0.2)
         text = "\n".join(" ".join(map(repr, p)) for p in points.tolist())
