@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from lietool import figure, paths
 from lietool.mesh import cloud_io, solids, surface_io
+from lietool.render.scene import Surface
 
 PROBE = figure.load("probe", (paths.FIGURES,))
 
