@@ -173,7 +173,8 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     path = tmp_path_factory.mktemp("report") / "report.html"
     about = {"renderer": "llvmpipe", "date": "today"}
     path.write_text(
-        report.build(toys(), title="Toys", about=about, review=_figures_report.REVIEW), encoding="utf-8"
+        report.build(toys(), title="Toys", about=about, review=f"lietool {_figures_report.REVIEW}"),
+        encoding="utf-8",
     )
     return path.as_uri()
 

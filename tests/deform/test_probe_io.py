@@ -30,10 +30,17 @@ def read(tmp_path: Path, text: str, name: str = "p.toml") -> probe_io.Probes:
 
 
 def example(tmp_path: Path) -> tuple[probe_io.Probes, probe_io.Poses]:
-    probes, poses = documented()
+    probes, poses, _ = documented()
     (tmp_path / "poses.toml").write_text(poses)
     found = read(tmp_path, probes)
     return found, probe_io.read_poses(tmp_path / "poses.toml", found)
+
+
+def test_the_documented_weights(tmp_path):
+    found = read(tmp_path, documented()[2])
+    assert found.weights is not None and found.weights.data == {"kind": "harmonic"}
+    (handle,) = found.handles
+    assert handle is not None and handle.data == {"ball": {"centre": [0, 0, 2], "radius": 0.3}}
 
 
 def test_the_documented_probes(tmp_path):
@@ -140,7 +147,7 @@ FLAT = str(np.diag([1.0, 1.0, 0.0, 1.0]).tolist())
         ("", r"p\.toml must be a file with something in it; got an empty one"),
         ("x = ", r"p\.toml must be a TOML file; got Invalid value \(at end of document\)"),
         ("x = 1\nx = 2", r"p\.toml must be a TOML file; got Cannot overwrite a value"),
-        ("x = 1", r"p\.toml must be a table of probe; got the key 'x'"),
+        ("x = 1", r"p\.toml must be a table of probe, weights; got the key 'x'"),
         ("probe = []", r"p\.toml, probe must be a file of probes, with at least one \[\[probe\]\]; got none"),
         ("[probe]\ncentre = [0, 0, 0]", r"p\.toml, probe must be a file of probes.*; got a table"),
         (
