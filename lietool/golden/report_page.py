@@ -161,14 +161,22 @@ def _bars(entry: Entry) -> Iterator[dict[str, Any]]:
     """How much of each tolerance is used; beyond one it is too much."""
     found = entry.comparison
     if found and found.same_size:
+        far = f"dE {found.delta_e_limit:g}"
         yield _bar(
-            f"Pixels beyond dE {found.delta_e_limit:g}",
-            found.over,
+            f"Pixels beyond {far} in one place",
+            found.crowd,
             found.pixels_limit,
-            f"{found.over} of {found.pixels_limit}",
-            f"{found.headroom_pixels} more would pass"
-            if found.headroom_pixels >= 0
-            else f"{-found.headroom_pixels} too many",
+            f"{found.crowd} of {found.pixels_limit}",
+            _room(found.pixels_limit - found.crowd),
+            found.crowd_at,
+            "around" if found.crowd_at else "",
+        )
+        yield _bar(
+            f"Pixels beyond {far} in all",
+            found.over,
+            found.strewn_limit,
+            f"{found.over} of {found.strewn_limit}",
+            _room(found.strewn_limit - found.over),
             found.largest_delta_e_at,
             f"largest dE {found.largest_delta_e:.1f}" if found.differing else "",
         )
@@ -193,6 +201,10 @@ def _bars(entry: Entry) -> Iterator[dict[str, Any]]:
         yield _bar("Numbers", used, 1.0, _share(used), f"{numbers}, {left}", None, where)
 
 
+def _room(headroom: int) -> str:
+    return f"{headroom} more would pass" if headroom >= 0 else f"{-headroom} too many"
+
+
 def _bar(
     what: str, used: float, limit: float, value: str, left: str, at: tuple[int, int] | None, where: str
 ) -> dict[str, Any]:
@@ -206,7 +218,7 @@ def _bar(
         "label": f"{what}: {value}, {left}",
         "left": left if at else ". ".join(filter(None, (left, where))),
         "go": json.dumps(at) if at else "",
-        "where": where + place,
+        "where": (where + place).strip(),
     }
 
 
