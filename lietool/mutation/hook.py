@@ -11,10 +11,10 @@ from typing import Any
 
 from lietool.mutation.mutant import Mutant, MutantError
 
-SUBJECTS = ("lietool.lie", "lietool.interp", "lietool.deform")
+SUBJECTS = ("lietool.lie", "lietool.mesh", "lietool.interp", "lietool.deform")
 """The packages that mutants are for."""
 # And what is built on them, which keeps copies of their names.
-_DEPENDENT = (*SUBJECTS, "lietool.mesh", "lietool.bench", "lietool.figures", "lietool_project")
+_DEPENDENT = (*SUBJECTS, "lietool.bench", "lietool.figures", "lietool_project")
 
 
 class _Loader(SourceFileLoader):

@@ -450,3 +450,8 @@ def test_a_corner_may_turn_inside_out_and_is_named():
         cage.solve(prepared, now)
     done = cage.solve(prepared, now, policy=orientation.nearest)
     assert done.pose.replaced.any() and np.isfinite(done.points).all()
+
+
+def test_influence_falls_with_the_cube():
+    w = cage_weights.inverse_cube(np.array([[1.0, 2.0, 4.0]]))
+    assert w[0] / w[0, 0] == pytest.approx([1.0, 1.0 / 8.0, 1.0 / 64.0])

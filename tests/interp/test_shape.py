@@ -380,3 +380,10 @@ class TestPaths:
     def test_too_few(self, make, points):
         with pytest.raises(ValueError, match=r"points must be"):
             make(points)
+
+
+def test_a_bspline_has_even_knots():
+    p = np.array([[0.0, 0.0], [1.0, 2.0], [3.0, -1.0], [4.0, 4.0], [6.0, 1.0]])
+    found = constraint.bspline(p)(np.array([0.0, 0.5, 1.0]))
+    # With one knot inside, at one half, that point is by de Boor's rule the mean of the middle of its means.
+    assert found == pytest.approx(np.stack([p[0], (p[1] + 2.0 * p[2] + p[3]) / 4.0, p[4]]))
