@@ -338,7 +338,7 @@ def test_ci_fails_with_its_parts_and_wants_a_renderer_and_a_browser(tmp_path, li
     )
     stand_in.chmod(0o755)
     done = subprocess.run(["bash", tmp_path / ".ci" / "run"], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (expected, "browser 1 1\nlint 1 1\ntest 1 1\n")
+    assert (done.returncode, done.stdout) == (expected, "browser 1 1\nlint 1 1\ntest 1 1\nmutants 1 1\n")
 
 
 def test_scripts_can_be_executed():
