@@ -356,9 +356,11 @@ class TestGolden:
 
 
 class TestFolder:
-    def test_a_second_run_replaces_the_first(self, run, tmp_path):
+    def test_a_second_run_replaces_the_first(self, run, tmp_path, monkeypatch):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
         run()
         before = files(tmp_path / "out/gallery")
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", "90000")
         run()
         assert files(tmp_path / "out/gallery") == before
         run("T1")

@@ -145,6 +145,8 @@ def _drawn(
     from lietool.render import export
 
     made = _studio.provenance(item, studio.info)
+    # A picture goes by its content's name: the hour would rename all of them though nothing has changed.
+    del made["date"]
     pictures, numbers = {}, {}
     for theme in order.themes:
         painted = studio.paint(item, theme="book" if theme == "light" else theme)
