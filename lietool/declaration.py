@@ -9,11 +9,12 @@ import re
 import sys
 import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from lietool import parameter as _parameter
+from lietool.function import Library
 from lietool.parameter import Parameter, nearest
 from lietool.plate import Drawing, FigureError, Plate, Time, Tolerance
 
@@ -43,6 +44,7 @@ class Figure:
     summary: str
     help: str
     mesh: tuple[str, ...] = ()
+    functions: Mapping[str, Library] = field(default_factory=dict)
 
     def draw(self, **params: object) -> Drawing:
         """Draw the figure; parameters that are not given have their defaults.
@@ -55,8 +57,32 @@ class Figure:
             If the function returns anything but a `Drawing`, or one with a mesh that is not declared, or
             without one that is.
         """
+        return self.draw_with({}, **params)
+
+    def draw_with(self, functions: Mapping[str, Callable[..., Any]], **params: object) -> Drawing:
+        """Draw the figure with functions of one's own in place of those of the library that it shows.
+
+        Parameters
+        ----------
+        functions : mapping from str to callable
+            By the names of the keyword-only arguments of the figure's function; `functions` of this
+            figure has what they stand for.  Those that are not given are the library's.
+        **params : object
+            As for `draw`.
+
+        Raises
+        ------
+        ValueError
+            As `draw`, or if the figure does not take a function of that name.
+        FigureError
+            As `draw`.
+        """
+        for name in functions:
+            if name not in self.functions:
+                hint = nearest(name, self.functions)
+                raise ValueError(f"{self.name}.draw_with: it takes no function {name!r}.{hint}")
         values = self.check(params)
-        drawing = self.function(**values)
+        drawing = self.function(**values, **functions)
         if not isinstance(drawing, Drawing):
             raise FigureError(f"{self.file}: {self.name} must return a Drawing; got {type(drawing).__name__}")
         if (drawing.mesh is not None) != self.shows_mesh(values):
@@ -165,7 +191,8 @@ def _checked(
     chapter = "" if file.parent.name == "figures" else file.parent.name
     name = function.__name__.replace("_", "-")
     read = _parameter.together(_read_signature(function))
-    checked = Figure(name, function, read, plates, time, file, chapter, summary, help_text, mesh)
+    taken = _read_functions(function)
+    checked = Figure(name, function, read, plates, time, file, chapter, summary, help_text, mesh, taken)
     _check_only(checked)
     _check_positional(checked)
     _check_plates(checked)
@@ -174,9 +201,18 @@ def _checked(
     return checked
 
 
+def _read_functions(function: Callable[..., Drawing]) -> dict[str, Library]:
+    arguments = inspect.signature(function).parameters.items()
+    return {name: x.default for name, x in arguments if isinstance(x.default, Library)}
+
+
 def _read_signature(function: Callable[..., Drawing]) -> Iterable[Parameter]:
     hints = typing.get_type_hints(function, include_extras=True)
     for name, argument in inspect.signature(function).parameters.items():
+        if isinstance(argument.default, Library):
+            if argument.kind is not inspect.Parameter.KEYWORD_ONLY:
+                raise ValueError(f"function {name} must be keyword-only. Write it after the *")
+            continue
         if name in RESERVED:
             raise ValueError(f"parameter {name} has the name of an option that every figure has. Rename it")
         if argument.default is inspect.Parameter.empty:

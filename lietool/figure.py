@@ -20,6 +20,7 @@ from lietool import paths
 from lietool.declaration import RESERVED as RESERVED
 from lietool.declaration import Figure as Figure
 from lietool.declaration import figure as figure
+from lietool.function import Library as Library
 from lietool.parameter import Param as Param
 from lietool.parameter import Parameter as Parameter
 from lietool.parameter import nearest as nearest

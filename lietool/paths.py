@@ -1,8 +1,8 @@
-"""Where the figures and the goldens lie, in a checkout and in a wheel.
+"""Where the figures, the exercises and the goldens lie, in a checkout and in a wheel.
 
-In a checkout they are the folders ``figures/`` and ``golden/`` beside the
-package; in a wheel they travel inside it as ``lietool/figures`` and
-``lietool/goldens``.  Both are found from this file alone, so that an editable
+In a checkout they are the folders ``figures/``, ``exercises/`` and ``golden/``
+beside the package; in a wheel they travel inside it as ``lietool/figures``,
+``lietool/exercises`` and ``lietool/goldens``.  All are found from this file alone, so that an editable
 install can never read a stale copy.
 """
 
@@ -17,4 +17,5 @@ def _beside_or_inside(inside: str, beside: str) -> Path:
 
 
 FIGURES = _beside_or_inside("figures", "figures")
+EXERCISES = _beside_or_inside("exercises", "exercises")
 GOLDEN = _beside_or_inside("goldens", "golden")

@@ -33,7 +33,7 @@ def _rule(ours: str = "", others: str = "", lazily: str = "", ours_lazily: str =
 
 
 _BELOW = "paths atomic cache"
-_ALL = "bench gallery lie mesh interp deform render golden figure verbs mutation lietool " + _BELOW
+_ALL = "bench exercise gallery lie mesh interp deform render golden figure verbs mutation lietool " + _BELOW
 RULES = {
     "lietool": _rule(),
     "paths": _rule(),
@@ -41,10 +41,11 @@ RULES = {
     "cache": _rule(),
     "__main__": _rule("cli"),
     "figures": _rule("paths"),
+    "function": _rule(),
     "parameter": _rule(),
     "plate": _rule(),
-    "declaration": _rule("parameter plate"),
-    "figure": _rule("declaration parameter paths plate", ours_lazily="figures"),
+    "declaration": _rule("function parameter plate"),
+    "figure": _rule("declaration function parameter paths plate", ours_lazily="figures"),
     "cli": _rule("figure paths lietool", "click", "rich", ours_lazily="verbs"),
     "lie": _rule("lie", "numpy", "scipy"),
     # Solids that take seconds to make are kept in the cache folder, and written there whole.
@@ -57,9 +58,15 @@ RULES = {
     "gallery": _rule("gallery " + _BELOW, "jinja2 markupsafe", "matplotlib"),
     # It puts mistakes into what others import, and must not have imported that itself.
     "mutation": _rule("mutation lietool render golden " + _BELOW, "numpy"),
+    # It grades what others have written, by the library, the catalogue of mistakes and the pictures.
+    "exercise": _rule(
+        "exercise figure function mutation golden render lietool " + _BELOW, "numpy", ours_lazily="exercises"
+    ),
+    "exercises": _rule("paths"),
     "verbs": _rule(_ALL, "click", "numpy PIL rich moderngl"),
     # Imported by a verb when it is called, so what it needs may stand at its top.
     "a part of a verb": _rule(_ALL, "click numpy", "PIL rich moderngl"),
+    "an exercise": _rule("exercise function lie mesh interp deform", "numpy", "scipy"),
     "a figure": _rule("figure bench lie mesh interp deform render", "numpy"),
 }
 # Modules that may import more than the rest of their part.
@@ -83,7 +90,7 @@ class Import:
 
 
 def _files() -> list[Path]:
-    folders = (paths.PACKAGE, paths.FIGURES)
+    folders = (paths.PACKAGE, paths.FIGURES, paths.EXERCISES)
     return sorted(
         file for folder in folders for file in folder.rglob("*.py") if "__pycache__" not in file.parts
     )
@@ -92,6 +99,8 @@ def _files() -> list[Path]:
 def _part(file: Path) -> str:
     if file.is_relative_to(paths.FIGURES):
         return "a figure"
+    if file.is_relative_to(paths.EXERCISES):
+        return "an exercise"
     first = file.relative_to(paths.PACKAGE).parts[0].removesuffix(".py")
     if first == "verbs" and file.name.startswith("_") and file.name != "__init__.py":
         return "a part of a verb"

@@ -286,6 +286,27 @@ def test_a_bad_file_is_refused_by_name(project: Path, text: str, message: str) -
     assert "\n" not in str(error.value)
 
 
+_TAKES = 'x: Annotated[float, Param("x")] = 1.0, *, root: Library = Library("math.sqrt")'
+
+
+def test_a_function_may_be_passed_in(project: Path) -> None:
+    _write(project, "ch9/tiny.py", _tiny(_TAKES).replace("{})", "{'y': root(x)})"))
+    tiny = figures.declare("tiny")
+    assert tiny.functions == {"root": figures.Library("math.sqrt")}
+    assert [p.name for p in tiny.parameters] == ["x"]
+    tiny = figures.load("tiny")
+    assert tiny.draw(x=9.0).numbers == {"y": 3.0}
+    assert tiny.draw_with({"root": lambda x: -x}, x=9.0).numbers == {"y": -9.0}
+    with pytest.raises(ValueError, match=r"tiny.draw_with: it takes no function 'rot'\. Nearest: root"):
+        tiny.draw_with({"rot": abs})
+
+
+def test_a_function_is_keyword_only(project: Path) -> None:
+    _write(project, "ch9/tiny.py", _tiny(_TAKES.replace("*, ", "")))
+    with pytest.raises(figures.FigureError, match="function root must be keyword-only"):
+        figures.load("tiny")
+
+
 def test_a_mesh_is_returned_just_where_it_is_declared(project: Path) -> None:
     view = 'view: Annotated[Literal["a", "b"], Param("v")] = "a"'
     for mesh, fine in ((("view", "b"), {"b"}), (True, {"a", "b"}), (False, set())):

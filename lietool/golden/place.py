@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from lietool import atomic
+from lietool import atomic, paths
 from lietool.golden import picture
 
 T = TypeVar("T")
@@ -31,6 +31,12 @@ class Place:
     root: Path
     chapter: str
     plate: str
+
+    @classmethod
+    def beside(cls, file: Path, chapter: str, plate: str) -> "Place":
+        """Return the place of a plate by the file of its figure: beside the folder of figures it is in."""
+        folder = file.parent.parent if chapter else file.parent
+        return cls(paths.GOLDEN if folder == paths.FIGURES else folder.parent / "golden", chapter, plate)
 
     @property
     def png(self) -> Path:

@@ -76,9 +76,7 @@ class Item:
         """Where the golden lies: beside the folder of figures that the plate comes from."""
         from lietool.golden.store import Place
 
-        file, chapter = self.declared.file, self.declared.chapter
-        folder = file.parent.parent if chapter else file.parent
-        return Place(paths.GOLDEN if folder == paths.FIGURES else folder.parent / "golden", chapter, self.id)
+        return Place.beside(self.declared.file, self.declared.chapter, self.id)
 
     @property
     def program(self) -> str:

@@ -1,0 +1,129 @@
+"""Which typical mistake explains what a student's function returned."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from lietool import mutation
+from lietool.exercise import compare
+from lietool.exercise.record import Case, Exercise, Value
+
+# How near a wrong function must be, relative to its values: nearer than two of them are to each other.
+_NEAR = 1e-7
+# Of several mistakes that explain it, those that are told.
+_MOST = 2
+REFUSED = object()
+"""Stands for the result of a function that raised an error."""
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """An input, what was wanted, and what the student's function returned, or `REFUSED`."""
+
+    case: Case
+    want: Value
+    got: Any
+
+
+@dataclass(frozen=True, eq=False)
+class _Wrong:
+    says: str
+    functions: Mapping[str, Callable[..., Value]]
+
+
+def sentences(exercise: Exercise, seen: Sequence[Seen]) -> tuple[str, ...]:
+    """Return what explains the results of a student's functions.
+
+    A mistake does if it gives what the student's function gives for all inputs, and does not for all of
+    them give what is right.
+
+    Parameters
+    ----------
+    exercise : Exercise
+        Whose mistakes are tried: its own, then those of the catalogue that it names.
+    seen : sequence of Seen
+        What was tried.
+
+    Returns
+    -------
+    tuple of str
+        At most two, a sentence or two each; none where all is right, or nothing explains it.
+    """
+    wrong = {x.case.function for x in seen if not _same(exercise, x.case.function, x.got, x.want)}
+    if not wrong:
+        return ()
+    if all(_is_blank(x.got) for x in seen):
+        return ("It returns nan only, as the file does that you started with: write the function.",)
+    told: list[str] = []
+    for mistake in _wrongs(exercise):
+        mine = [x for x in seen if x.case.function in mistake.functions]
+        if wrong.isdisjoint(mistake.functions) or mistake.says in told:
+            continue
+        if mine and _explains(exercise, mistake, mine):
+            told.append(mistake.says)
+            if len(told) == _MOST:
+                break
+    return tuple(told)
+
+
+def _explains(exercise: Exercise, mistake: _Wrong, seen: Sequence[Seen]) -> bool:
+    differs = False
+    for x in seen:
+        name = x.case.function
+        try:
+            with np.errstate(all="ignore"):
+                made = mistake.functions[name](*_copied(x.case.args))
+        except Exception:
+            made = REFUSED
+        if not _same(exercise, name, x.got, made, _NEAR):
+            return False
+        differs = differs or not _same(exercise, name, made, x.want)
+    return differs
+
+
+def _wrongs(exercise: Exercise) -> Iterator[_Wrong]:
+    for mistake in exercise.mistakes:
+        yield _Wrong(mistake.says, mistake.functions)
+    for mutant in _catalogue():
+        if not mutant.name.startswith(exercise.mutants or ("\0",)):
+            continue
+        for function in exercise.functions:
+            if function.library:
+                yield _Wrong(
+                    mutant.says, {function.name: function.calling(_mutated(mutant, function.library))}
+                )
+
+
+@cache
+def _catalogue() -> tuple[mutation.Mutant, ...]:
+    return tuple(mutation.catalogue())
+
+
+@cache
+def _mutated(mutant: mutation.Mutant, name: str) -> Callable[..., Value]:
+    return mutation.function(mutant, name)
+
+
+def _same(exercise: Exercise, name: str, a: Any, b: Any, tolerance: float = 0.0) -> bool:
+    if a is REFUSED or b is REFUSED:
+        return a is b
+    function = exercise.function(name)
+    try:
+        return bool(function.apart(a, b) <= max(function.tolerance, tolerance))
+    except compare.UnlikeError:
+        return False
+
+
+def _is_blank(value: Any) -> bool:
+    """Whether a result is nan throughout, as that of a starter is."""
+    if value is REFUSED:
+        return False
+    parts = value if isinstance(value, tuple | list) else (value,)
+    return all(np.asarray(part).dtype.kind in "fc" and bool(np.isnan(part).all()) for part in parts)
+
+
+def _copied(args: tuple[Value, ...]) -> tuple[Value, ...]:
+    return tuple(x.copy() if isinstance(x, np.ndarray) else x for x in args)

@@ -1,0 +1,218 @@
+"""Grading: what a student's functions return is judged here, in the process that they do not run in."""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from lietool.exercise import compare, diagnose, texts
+from lietool.exercise.calls import Functions
+from lietool.exercise.outcome import Finding, Graded, Outcome, Shown
+from lietool.exercise.record import Case, Check, Claim, Exercise
+from lietool.exercise.student import Limits, Student, Trouble
+
+# A function that has run out of its time twice will do so again: what is left is lost without waiting.
+_PATIENCE = 2
+
+
+def grade(
+    exercise: Exercise,
+    source: str,
+    *,
+    seed: int = 0,
+    picture: bool = True,
+    limits: Limits | None = None,
+    name: str = "submission.py",
+) -> Graded:
+    """Grade a submission.
+
+    The same text, exercise and seed give the same marks and the same words.
+
+    Parameters
+    ----------
+    exercise : Exercise
+        What it is for.
+    source : str
+        The submission.
+    seed : int
+        Of random inputs.
+    picture : bool
+        Whether the plate is drawn; without it its points are neither earned nor to be had.
+    limits : Limits, optional
+        What the student's process may use.
+    name : str
+        What messages call the submission.
+
+    Returns
+    -------
+    Graded
+        The marks, and why.
+
+    Raises
+    ------
+    ExerciseError
+        If the plate of the exercise cannot be had.
+    """
+    names = [function.name for function in exercise.functions]
+    with Student(
+        source, functions=names, allowed=exercise.allowed, limits=limits or Limits(), name=name, seed=seed
+    ) as student:
+        trial = _Trial(exercise, student, seed)
+        outcomes = [trial.check(index, check) for index, check in enumerate(exercise.checks)]
+        shown = None
+        if picture:
+            outcome, shown = trial.picture()
+            outcomes.append(outcome)
+        printed = student.printed
+    return Graded(
+        exercise.name,
+        exercise.title,
+        tuple(outcomes),
+        diagnose.sentences(exercise, trial.seen),
+        seed,
+        hashlib.sha256(source.encode()).hexdigest(),
+        printed,
+        shown,
+    )
+
+
+class _Trial:
+    """One submission while it is tried: what came is kept for a diagnosis."""
+
+    def __init__(self, exercise: Exercise, student: Student, seed: int) -> None:
+        self.exercise, self.student, self.seed = exercise, student, seed
+        self.seen: list[diagnose.Seen] = []
+        self._late: dict[str, int] = {}
+
+    def call(self, function: str, *args: Any) -> Any:
+        """Call a function of the student, unless it has run out of its time too often; raises Trouble."""
+        if self._late.get(function, 0) >= _PATIENCE:
+            raise Trouble("time", f"{function} was not tried again: it ran out of its time {_PATIENCE} times")
+        try:
+            return self.student.call(function, *args)
+        except Trouble as trouble:
+            if trouble.kind == "time":
+                self._late[function] = self._late.get(function, 0) + 1
+            raise
+
+    def check(self, index: int, check: Check) -> Outcome:
+        """Try one check."""
+        rng = np.random.default_rng([self.seed, self.exercise.number, index])
+        trouble = ""
+        if check.cases is not None:
+            findings = [self._case(case) for case in check.cases(rng)]
+        else:
+            findings, trouble = self._law(check, rng)
+        points = check.points if findings and not trouble and all(x.passed for x in findings) else 0
+        kind = "law" if check.cases is None else "cases"
+        return Outcome(check.title, kind, points, check.points, tuple(findings), trouble)
+
+    def _case(self, case: Case) -> Finding:
+        function = self.exercise.function(case.function)
+        case = replace(case, function=function.name)
+        given = texts.given(self.exercise.arguments.get(function.name, ()), case.args)
+        got, trouble = diagnose.REFUSED, None
+        try:
+            got = self.call(function.name, *case.args)
+        except Trouble as error:
+            trouble = error
+        if case.raises:
+            return _refusal(case, given, got, trouble)
+        want = function.wanted(*case.args)
+        self.seen.append(diagnose.Seen(case, want, got))
+        if trouble is not None:
+            return Finding(case.says, False, given, trouble=_told(trouble))
+        return _judged(case.says, given, got, want, function.apart, function.tolerance)
+
+    def _law(self, check: Check, rng: np.random.Generator) -> tuple[list[Finding], str]:
+        findings: list[Finding] = []
+        assert check.law is not None
+        try:
+            with np.errstate(all="ignore"):
+                for claim in check.law(Functions(self.exercise, self), rng):
+                    findings.append(_claimed(claim))
+        except (Trouble, compare.UnlikeError) as error:
+            return findings, _told(error)
+        except Exception as error:
+            return findings, f"it cannot be tried with what your function returns: {_line(error)}"
+        return findings, ""
+
+    def picture(self) -> tuple[Outcome, Shown]:
+        """Draw the plate with the student's functions, and compare."""
+        from lietool.exercise import picture
+
+        wanted = self.exercise.picture
+        # Before the student is asked: a plate without a golden is nobody's fault but ours.
+        reference = picture.golden(wanted.plate).image
+        passes, trouble = False, ""
+        shown = Shown(wanted.plate, None, reference, "")
+        try:
+            with np.errstate(all="ignore"):
+                functions = wanted.functions(Functions(self.exercise, self, finite=True))
+                image = picture.drawn(wanted.plate, functions)
+        except (Trouble, compare.UnlikeError) as error:
+            trouble = _told(error)
+        except Exception as error:
+            trouble = f"the figure cannot be drawn with what your function returns: {_line(error)}"
+        else:
+            passes, shown = picture.compared(wanted.plate, image)
+        shown = replace(shown, says=trouble or shown.says)
+        finding = Finding(f"plate {wanted.plate}", passes, off="" if passes else shown.says, trouble=trouble)
+        points = wanted.points if passes else 0
+        return Outcome(f"the picture {wanted.plate}", "picture", points, wanted.points, (finding,)), shown
+
+
+def _refusal(case: Case, given: str, got: Any, trouble: Trouble | None) -> Finding:
+    """Judge what came of an input that must be refused."""
+    wanted = "a ValueError"
+    if trouble is None:
+        return Finding(case.says, False, given, wanted, texts.value(got))
+    if trouble.kind == "error" and "ValueError" in (trouble.name, *trouble.bases):
+        return Finding(case.says, True)
+    return Finding(case.says, False, given, wanted, trouble=_told(trouble))
+
+
+def _claimed(claim: Claim) -> Finding:
+    given = texts.given((), claim.given)
+    return _judged(claim.says, given, claim.got, claim.want, compare.apart, claim.tolerance)
+
+
+def _judged(
+    says: str,
+    given: str,
+    got: Any,
+    want: Any,
+    apart: Callable[[Any, Any], float],
+    tolerance: float,
+) -> Finding:
+    try:
+        with np.errstate(all="ignore"):
+            off = apart(got, want)
+    except compare.UnlikeError as error:
+        return Finding(says, False, given, trouble=str(error))
+    # Also where it is nan.
+    if off <= tolerance:
+        return Finding(says, True)
+    wanted, came = texts.beside(_like(got, want), want)
+    return Finding(says, False, given, wanted, came, f"{off:.2g}, allowed {tolerance:.2g}")
+
+
+def _like(got: Any, want: Any) -> Any:
+    """Make of a list that stands for a tuple one, and of a claim's number an array as large as the other."""
+    if isinstance(want, tuple):
+        return tuple(got)
+    return np.broadcast_to(np.asarray(got), np.shape(want)) if not isinstance(got, Sequence) else got
+
+
+def _told(error: Trouble | compare.UnlikeError) -> str:
+    if isinstance(error, Trouble):
+        return f"line {error.line}: {error.message}" if error.line else error.message
+    return str(error)
+
+
+def _line(error: Exception) -> str:
+    """An error in one line."""
+    text = " ".join(str(error).split())
+    return text[:200] or type(error).__name__

@@ -1,0 +1,64 @@
+"""Values as a student reads them: in one line, the long ones by the entry that matters."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+# What fits in a line; of more, one entry is shown.
+_MOST = 16
+
+
+def value(x: Any) -> str:
+    """Return a value in one line: numbers to six digits, and of a long array only its shape."""
+    if isinstance(x, tuple | list):
+        return ", ".join(value(part) for part in x)
+    if isinstance(x, str):
+        return repr(x)
+    array = np.asarray(x)
+    if array.size > _MOST:
+        return f"an array of shape {array.shape}"
+    if array.dtype.kind not in "fiubc":
+        return "no numbers"
+    if not array.ndim:
+        return f"{array[()]:.7g}"
+    text = np.array2string(array, precision=6, separator=", ", suppress_small=False, max_line_width=10**6)
+    return " ".join(text.split())
+
+
+def given(names: Sequence[str], args: Sequence[Any]) -> str:
+    """Return arguments with their names: "axis = [0., 0., 1.], angle = 2.0944"."""
+    # Of a function with *args not all have a name.
+    named = [*names, *[""] * len(args)]
+    return ", ".join(
+        f"{name} = {value(x)}" if name else value(x) for name, x in zip(named, args, strict=False)
+    )
+
+
+def beside(got: Any, want: Any) -> tuple[str, str]:
+    """Return what was wanted and what came, of long arrays the entry that is farthest off.
+
+    Parameters
+    ----------
+    got, want : array_like or tuple of array_like
+        Results of the same shapes.
+
+    Returns
+    -------
+    wanted, came : str
+        One line each.
+    """
+    if isinstance(want, tuple):
+        pairs = [beside(a, b) for a, b in zip(got, want, strict=True)]
+        return "; ".join(a for a, _ in pairs), "; ".join(b for _, b in pairs)
+    a, b = np.asarray(got), np.asarray(want)
+    if b.size <= _MOST:
+        return value(b), value(a)
+    with np.errstate(invalid="ignore", over="ignore"):
+        off = np.where(a == b, 0.0, np.abs(a.astype(b.dtype) - b) if a.dtype.kind != "c" else np.abs(a - b))
+    worst = np.unravel_index(int(np.argmax(np.where(np.isnan(off), np.inf, off))), b.shape)
+    # The axes that belong together, of a matrix or a vector, are shown whole where there are few.
+    keep = next((k for k in range(b.ndim) if np.prod(b.shape[k:], dtype=int) <= _MOST), b.ndim)
+    index = worst[:keep]
+    where = f"[{', '.join(map(str, index))}] "
+    return where + value(b[index]), where + value(a[index])
