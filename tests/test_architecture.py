@@ -52,7 +52,7 @@ RULES = {
     "mesh": _rule("mesh lie cache atomic", "numpy", "scipy trimesh skimage svgelements"),
     "interp": _rule("interp lie mesh", "numpy", "scipy skimage"),
     "deform": _rule("deform lie mesh", "numpy", "scipy skimage"),
-    "bench": _rule("bench lie mesh interp deform", "numpy mpmath", "scipy pytransform3d"),
+    "bench": _rule("bench lie mesh interp deform", "numpy mpmath", "scipy pytransform3d skimage matplotlib"),
     "render": _rule("render " + _BELOW, "numpy moderngl glcontext PIL", "matplotlib av"),
     "golden": _rule("golden " + _BELOW, "numpy PIL pytest", "skimage matplotlib jinja2 markupsafe"),
     "gallery": _rule("gallery " + _BELOW, "jinja2 markupsafe", "matplotlib"),
@@ -72,7 +72,13 @@ RULES = {
 # Modules that may import more than the rest of their part.
 EXCEPTIONS = {
     "lie": {"scipy": {"generic"}},
-    "bench": {"mpmath": {"exact"}, "scipy": {"others", "solvers"}, "pytransform3d": {"others"}},
+    "bench": {
+        "mpmath": {"exact"},
+        "scipy": {"others", "solvers"},
+        "pytransform3d": {"others"},
+        "skimage": {"peers"},
+        "matplotlib": {"peers"},
+    },
     "golden": {"pytest": {"plugin"}, "matplotlib": {"pixels"}},
 }
 

@@ -76,7 +76,7 @@ def run(items: Sequence[_studio.Item], as_json: bool, *, quick: bool, jobs: int)
             store.provenance(item.place)
         except store.GoldenError as error:
             raise _studio.Stop(3, f"{item.id}: {error}") from None
-    backends, left_out = _backends()
+    backends, left_out = available()
     ways = settings.few(backends) if quick else settings.every(backends)
     rows = _measure(items, ways, jobs)
     alarms = [row for row in rows if row.alarm]
@@ -94,8 +94,8 @@ def run(items: Sequence[_studio.Item], as_json: bool, *, quick: bool, jobs: int)
     return 5 if alarms else 0
 
 
-def _backends() -> tuple[list[str], dict[str, str]]:
-    """The backends that are llvmpipe here, and why the others are left out."""
+def available() -> tuple[list[str], dict[str, str]]:
+    """Find the backends that are llvmpipe here, and why the others are left out; stops where none is."""
     found, left_out = [], {}
     for backend in settings.BACKENDS:
         told = probe.run(backend, env=settings.environment(settings.Setting(backend), ""))
@@ -113,7 +113,7 @@ def _backends() -> tuple[list[str], dict[str, str]]:
 
 def _measure(items: Sequence[_studio.Item], ways: Sequence[settings.Setting], jobs: int) -> list[Row]:
     rows = []
-    with tempfile.TemporaryDirectory(prefix="lietool-noise-") as folder, _Crew(jobs) as crew:
+    with tempfile.TemporaryDirectory(prefix="lietool-noise-") as folder, Crew(jobs) as crew:
         drawn = {name: Path(folder, name) for name in dict.fromkeys(way.computing for way in ways)}
         plates = [item.id for item in items]
         tasks = []
@@ -144,7 +144,7 @@ def _measure(items: Sequence[_studio.Item], ways: Sequence[settings.Setting], jo
     return rows
 
 
-class _Crew:
+class Crew:
     """Processes that draw, a few at a time; none outlives the block."""
 
     def __init__(self, jobs: int) -> None:
@@ -152,7 +152,7 @@ class _Crew:
         self._running: set[subprocess.Popen[str]] = set()
         self._lock, self._over = threading.Lock(), False
 
-    def __enter__(self) -> "_Crew":
+    def __enter__(self) -> "Crew":
         return self
 
     def __exit__(self, *_: object) -> None:

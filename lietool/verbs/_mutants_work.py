@@ -70,6 +70,36 @@ def attempt(mutant: Mutant, items: Sequence[_studio.Item], folder: Path, enough:
         yield outcome
 
 
+def keep(mutant: Mutant, items: Sequence[_studio.Item], folder: Path, enough: int) -> Iterator[str]:
+    """Keep the pictures of plates with a mistake, and yield why there is none; empty where there is one.
+
+    A picture that is the golden is none, and after `enough` no more are drawn.
+    """
+    from PIL import Image
+
+    from lietool.golden import store
+
+    _keep_nothing()
+    hook.install(mutant)
+    kept = 0
+    for item in items:
+        if kept >= enough:
+            yield "there are enough"
+            continue
+        try:
+            image = _rendered(item, item.figure.draw(**item.parameters))
+        except Exception as error:
+            yield process.told(error)
+            continue
+        if compare.images(store.read(item.place).image, image).equal:
+            yield "nothing changes"
+            continue
+        # Others' programs read it; its name is known to nobody before this process tells it.
+        Image.fromarray(image).save(folder / f"{item.id}.png")
+        kept += 1
+        yield ""
+
+
 def _tried(item: _studio.Item, folder: Path) -> Outcome:
     before = reference.read(file(folder, item.id))
     assert before is not None

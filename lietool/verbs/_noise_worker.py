@@ -24,12 +24,18 @@ def main(task: str) -> None:
     Parameters
     ----------
     task : str
-        JSON: "do" ("compute" or "render"), "plates" (their ids) and "folder" (of the drawings).
+        JSON: "do" ("compute", "render" or "keep"), "plates" (their ids), "folder" (of the drawings), and
+        to keep pictures "pictures" (their folder).
     """
     told = json.loads(task)
-    work = compute if told["do"] == "compute" else render
+    folder = Path(told["folder"])
+    work = {
+        "compute": compute,
+        "render": render,
+        "keep": lambda item, folder: keep(item, folder, Path(told["pictures"])),
+    }[told["do"]]
     for item in _studio.items(told["plates"]):
-        print(json.dumps({"plate": item.id} | work(item, Path(told["folder"]))), flush=True)
+        print(json.dumps({"plate": item.id} | work(item, folder)), flush=True)
 
 
 def start(task: Mapping[str, Any]) -> Sequence[str]:
@@ -76,9 +82,7 @@ def render(item: _studio.Item, folder: Path) -> dict[str, Any]:
     dict
         Each of "plain" and "jitter": "differing", "over", "crowd", "lowpass" and "passes" of `Comparison`.
     """
-    # Our own file of a moment ago, in a folder that nobody else may write to.
-    picture = pickle.loads((folder / f"{item.id}.pickle").read_bytes())
-    image = draw.render(picture, store=labels.Store((item.place.labels,))).image
+    image = _rendered(item, folder)
     golden, limits = store.read(item.place).image, item.plate.tolerance
     found = {}
     for name, shown in (("plain", image), ("jitter", jittered(image, item.id))):
@@ -93,6 +97,35 @@ def render(item: _studio.Item, folder: Path) -> dict[str, Any]:
             "passes": c.passes,
         }
     return found
+
+
+def keep(item: _studio.Item, folder: Path, pictures: Path) -> dict[str, Any]:
+    """Render the records of a plate and keep the picture.
+
+    Parameters
+    ----------
+    item : Item
+        The plate.
+    folder : Path
+        Where `compute` has kept the records.
+    pictures : Path
+        Where the picture goes.
+
+    Returns
+    -------
+    dict
+        Nothing.
+    """
+    from PIL import Image
+
+    Image.fromarray(_rendered(item, folder)).save(pictures / f"{item.id}.png")
+    return {}
+
+
+def _rendered(item: _studio.Item, folder: Path) -> np.ndarray:
+    # Our own file of a moment ago, in a folder that nobody else may write to.
+    picture = pickle.loads((folder / f"{item.id}.pickle").read_bytes())
+    return draw.render(picture, store=labels.Store((item.place.labels,))).image
 
 
 def jittered(image: np.ndarray, name: str) -> np.ndarray:

@@ -16,6 +16,7 @@ from lietool.verbs import (
     _bench_deform,
     _bench_interp,
     _bench_pairs,
+    _bench_peers,
     _bench_process,
     _bench_speed,
     _bench_tables,
@@ -43,6 +44,7 @@ for _subcommand in (
     _bench_deform.deform,
     _bench_deform.deform_work,
     _bench_deform.meshes,
+    _bench_peers.peers,
 ):
     command.add_command(_subcommand)
 
