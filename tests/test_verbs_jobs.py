@@ -112,10 +112,19 @@ def test_no_process_outlives_the_one_that_started_it(project, how):
     context.get()
     words = [sys.executable, "-m", "lietool", "--project", str(project), "figures", "build", "strokes", "-j2"]
     environment = os.environ | {"STROKES_WAIT": str(project)}
-    with subprocess.Popen(words, cwd=project, env=environment, stderr=subprocess.DEVNULL) as parent:
+    # Whatever runs the tests in the background has them ignore Ctrl-C, which would be inherited.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        parent = subprocess.Popen(words, cwd=project, env=environment, stderr=subprocess.DEVNULL)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    try:
         _until(lambda: len(list(project.glob("*.pid"))) == 2)
         parent.send_signal(how)
         assert parent.wait(30) == (130 if how == signal.SIGINT else -how)
+    finally:
+        parent.kill()
+        parent.wait()
     workers = [int(path.stem) for path in project.glob("*.pid")]
     _until(lambda: not any(map(_lives, workers)))
     assert not list(project.glob("out/*"))
