@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lietool.exercise.student import Trouble
 
 from lietool import mutation
 from lietool.exercise import (
@@ -21,6 +20,7 @@ from lietool.exercise import (
     picture,
 )
 from lietool.exercise.outcome import Shown
+from lietool.exercise.student import Trouble
 
 
 def right(x, y):
