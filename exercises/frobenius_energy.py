@@ -226,19 +226,9 @@ def _overwritten(P, F, weights):
     return np.kron(half, np.eye(2))
 
 
-def _two_corners(P, F, weights):
-    g = gradients(P, F)
-    g[:, 2] = 0.0
-    return _added(P, F, weights[:, None, None] * (g @ np.swapaxes(g, -1, -2)))
-
-
 def _by_axes(u):
     """All x, then all y."""
     return np.concatenate([u[..., ::2], u[..., 1::2]], axis=-1)
-
-
-def _ones(weights):
-    return np.ones(np.shape(weights))
 
 
 EXERCISE = Exercise(
@@ -277,7 +267,7 @@ EXERCISE = Exercise(
         Mistake(
             "weights left out",
             "The weights are left out: each triangle counts by its w_i, usually its area.",
-            {"matrix": lambda P, F, weights: matrix(P, F, _ones(weights))},
+            {"matrix": lambda P, F, weights: matrix(P, F, np.ones_like(weights))},
         ),
         Mistake(
             "all x, then all y",
@@ -304,12 +294,6 @@ EXERCISE = Exercise(
             {"matrix": _transposed},
         ),
         Mistake(
-            "third corner left out",
-            "The third corner has no part in it: B depends on it too, by v1 - v3 and v2 - v3. Moving the "
-            "whole shape must cost nothing.",
-            {"matrix": _two_corners},
-        ),
-        Mistake(
             "half of u",
             "This is half of u. |B - A|^2 = |B|^2 - 2 B . A + |A|^2 has a 2 in its middle.",
             {"pull": lambda P, F, weights, A: 0.5 * pull(P, F, weights, A)},
@@ -333,7 +317,7 @@ EXERCISE = Exercise(
         Mistake(
             "weights of u left out",
             "The weights are left out: in u, too, each triangle counts by its w_i.",
-            {"pull": lambda P, F, weights, A: pull(P, F, _ones(weights), A)},
+            {"pull": lambda P, F, weights, A: pull(P, F, np.ones_like(weights), A)},
         ),
         Mistake(
             "u by axes",

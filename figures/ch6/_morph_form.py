@@ -2,12 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from lietool.figure import Library
-from lietool.interp import assembly, constraint, shape
+from lietool.interp import constraint, forms, shape
 from lietool.mesh import topology
 
 Array = np.ndarray
@@ -62,13 +61,13 @@ class Forms:
         rows = constraint.rows(prepared.constraints, len(P), t)
         if energy == "frobenius":
             G, u = self.matrix(P, F, weights), self.pull(P, F, weights, maps)
-            v = _minimum(np.asarray(G), np.asarray(u), rows, 0, slice(None))
+            v = forms.least(np.asarray(G), np.asarray(u), rows, np.arange(len(t)))
         else:
-            forms = weights[:, None, None] * np.asarray(self.similarity(P[F], maps))
+            blocks = weights[:, None, None] * np.asarray(self.similarity(P[F], maps))
             none = np.zeros((1, 2 * len(P)))
             each = [
-                _minimum(_assembled(forms[k], F, len(P)), none, rows, k, slice(k, k + 1))
-                for k in range(len(t))
+                forms.least(forms.assembled(block, F, len(P)), none, rows, np.array([k]))
+                for k, block in enumerate(blocks)
             ]
             v = np.concatenate(each)
         size = float(np.ptp(P, axis=0).max())
@@ -87,33 +86,3 @@ def weights(prepared: shape.Prepared, equal: bool) -> Array:
     """Return those of the triangles: their areas, or all the same."""
     areas = topology.areas(prepared.source, prepared.faces)
     return np.ones(len(areas)) if equal else areas
-
-
-def _assembled(forms: Array, F: Array, count: int) -> Any:
-    """The sum of forms (m, 6, 6) of triangles, as a sparse matrix."""
-    from scipy.sparse import coo_array
-
-    at = (2 * F[..., None] + np.arange(2)).reshape(-1, 6)
-    row, column = (np.broadcast_to(x, forms.shape).ravel() for x in (at[:, :, None], at[:, None, :]))
-    return coo_array((forms.ravel(), (row, column)), (2 * count, 2 * count))
-
-
-def _minimum(G: Any, u: Array, rows: constraint.Rows, frame: int, frames: slice) -> Array:
-    """Where v^T G v + v^T u is least, or stationary, of the v under exact conditions; shape (T, 2 n)."""
-    from scipy.sparse import block_array, csc_array
-    from scipy.sparse.linalg import splu
-
-    n, every = G.shape[0] // 2, np.arange(len(rows.columns))
-    asked = assembly.targets(rows, every, True)[:, frames].T
-    # From all x, then all y, to x and y of each vertex.
-    U = assembly.dense(rows, frame, every, n, True).reshape(-1, 2, n).swapaxes(1, 2).reshape(-1, 2 * n)
-    side = csc_array(U)
-    # Only the symmetric part of G counts.
-    system = csc_array(block_array([[csc_array(G + G.T), side.T], [side, None]]))
-    try:
-        found = splu(system).solve(np.concatenate([-u, asked], axis=1).T).T
-    except RuntimeError:
-        raise ValueError(
-            "the form must hold the shape together; got one that leaves something loose. Correct the form"
-        ) from None
-    return found[:, : 2 * n]

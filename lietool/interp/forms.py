@@ -5,10 +5,13 @@ numbers, half as large and sparse, and that is what `shape` solves; these are fo
 one's own, and for shapes that are small.
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lietool.interp import energy, terms, triangle
+from lietool.interp import assembly, energy, terms, triangle
+from lietool.interp.constraint import Rows
 from lietool.lie import checks
 from lietool.mesh import topology
 
@@ -114,6 +117,70 @@ def similarity(corners: ArrayLike, A: ArrayLike) -> Array:
     faces = np.arange(3 * len(p)).reshape(-1, 3)
     part = terms.term(energy.SIMILARITY, _complex(p.reshape(-1, 2)), faces, np.ones(len(p)), _no_maps)
     return _blocks(part, part.form(np.stack(triangle.coordinates(A)))).reshape(*many, 6, 6)
+
+
+def assembled(blocks: Array, F: Index, count: int) -> Any:
+    """Return the matrix of a whole shape from those of its triangles.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (m, 6, 6)
+        As of `similarity`, times the triangles' weights.
+    F : ndarray of int, shape (m, 3)
+    count : int
+        The number of vertices, n.
+
+    Returns
+    -------
+    G : sparse array, shape (2 n, 2 n)
+    """
+    from scipy.sparse import coo_array
+
+    at = (2 * F[..., None] + np.arange(2)).reshape(-1, 6)
+    row, column = (np.broadcast_to(x, blocks.shape).ravel() for x in (at[:, :, None], at[:, None, :]))
+    return coo_array((blocks.ravel(), (row, column)), (2 * count, 2 * count))
+
+
+def least(G: Any, u: Array, rows: Rows, frames: Index) -> Array:
+    """Return where v^T G v + v^T u is least under conditions; where G is not positive, it is stationary there.
+
+    Book: 6.3
+
+    Parameters
+    ----------
+    G : ndarray or sparse array, shape (2 n, 2 n)
+        Of it only the symmetric part counts.
+    u : ndarray, shape (k, 2 n) or (1, 2 n)
+    rows : Rows
+        All of them exact, and with the same factors in all of these frames.
+    frames : ndarray of int, shape (k,)
+        Which of their times.
+
+    Returns
+    -------
+    v : ndarray, shape (k, 2 n)
+
+    Raises
+    ------
+    ValueError
+        If the form and the conditions leave something loose.
+    """
+    from scipy.sparse import block_array, csc_array
+    from scipy.sparse.linalg import splu
+
+    n, every = G.shape[0] // 2, np.arange(len(rows.columns))
+    asked = assembly.targets(rows, every, True)[:, frames].T
+    # From all x, then all y, to x and y of each vertex.
+    U = assembly.dense(rows, int(frames[0]), every, n, True)
+    U = csc_array(U.reshape(-1, 2, n).swapaxes(1, 2).reshape(-1, 2 * n))
+    pulled = np.broadcast_to(u, (len(frames), 2 * n))
+    system = csc_array(block_array([[csc_array(G + G.T), U.T], [U, None]]))
+    try:
+        return splu(system).solve(np.concatenate([-pulled, asked], axis=1).T).T[:, : 2 * n]
+    except RuntimeError:
+        checks.fail(
+            "forms.least", "G", "a form that holds the shape together", "one that leaves it loose", None
+        )
 
 
 def _sum(where: str, P: ArrayLike, F: ArrayLike, weights: ArrayLike) -> tuple[terms.Term, Index]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lietool.interp import energy, forms, shape, triangle
+from lietool.interp import constraint, energy, forms, shape, triangle
 
 RNG = np.random.default_rng(2)
 CORNERS, MOVED = RNG.normal(size=(2, 20, 3, 2))
@@ -77,3 +77,34 @@ class TestSimilarity:
     def test_a_map_that_is_0_is_refused(self):
         with pytest.raises(ValueError, match=r"forms.similarity: A must be a map that is not 0"):
             forms.similarity(CORNERS[0], np.zeros((2, 2)))
+
+
+class TestLeast:
+    TIMES = np.array([0.3, 0.5])
+
+    def rows(self, prepared):
+        return constraint.rows(prepared.constraints, len(prepared.source), self.TIMES)
+
+    def test_it_is_the_shape_of_the_library(self, bent):
+        P, Q, F = bent
+        w = np.ones(len(F))
+        prepared = shape.prepare(P, Q, F, weights=w)
+        maps = prepared.homotopy(prepared.maps, self.TIMES, prepared.theta)
+        v = forms.least(forms.matrix(P, F, w), forms.pull(P, F, w, maps), self.rows(prepared), np.arange(2))
+        found = shape.solve(prepared, self.TIMES).vertices
+        assert np.abs(v.reshape(found.shape) - found).max() < 1e-11
+
+    def test_with_a_matrix_for_each_moment(self, bent):
+        P, Q, F = bent
+        prepared = shape.prepare(P, Q, F, error=energy.SIMILARITY, weights=np.ones(len(F)))
+        maps = prepared.homotopy(prepared.maps, self.TIMES, prepared.theta)
+        G = forms.assembled(forms.similarity(P[F], maps[1]), F, len(P))
+        v = forms.least(G, np.zeros((1, 2 * len(P))), self.rows(prepared), np.array([1]))
+        found = shape.solve(prepared, self.TIMES).vertices[1]
+        assert np.abs(v.reshape(found.shape) - found).max() < 1e-11
+
+    def test_a_form_that_holds_nothing_is_refused(self, bent):
+        P, Q, F = bent
+        with pytest.raises(ValueError, match=r"forms.least: G must be a form that holds the shape together"):
+            none = np.zeros((2 * len(P), 2 * len(P)))
+            forms.least(none, none[:1], self.rows(shape.prepare(P, Q, F)), np.arange(1))
