@@ -142,7 +142,7 @@ def assembled(blocks: Array, F: Index, count: int) -> Any:
 
 
 def least(G: Any, u: Array, rows: Rows, frames: Index) -> Array:
-    """Return where v^T G v + v^T u is least under conditions; where G is not positive, it is stationary there.
+    """Return where v^T G v + v^T u is least, or stationary, of all v under conditions.
 
     Book: 6.3
 
