@@ -44,7 +44,7 @@ def _steps(s: Shown) -> list[scene.View]:
     seen = [
         [corners, corners @ s.S.T],
         [corners @ s.S.T, corners @ (s.R @ s.S).T, *_ends(s), _reach(s)],
-        [corners @ (s.R @ s.S).T, corners @ s.A[:3, :3].T + s.d, s.way(), s.shift[None]],
+        [corners @ (s.R @ s.S).T, corners @ s.A[:3, :3].T + s.d, s.way, s.shift[None]],
     ]
     cameras = each([np.concatenate(points) for points in seen], _DIRECTION, _UPPER, 1.1)
     zero, one = np.zeros(3), np.eye(3)
@@ -123,7 +123,7 @@ def _turn(s: Shown, camera: Camera) -> list[scene.Record]:
 
 def _moved(s: Shown, camera: Camera) -> list[scene.Record]:
     """The way of the origin to d, and l, along which it sets out."""
-    way = s.way()
+    way = s.way
     records: list[scene.Record] = [scene.Points([np.zeros(3)], style.INK, 6.0)]
     if s.map == "phi_se" and np.linalg.norm(s.shift) > NOTHING:
         records.append(scene.Arrow(np.zeros(3), s.shift, style.ALGEBRA, 0.016))
@@ -279,13 +279,16 @@ def _texts(s: Shown) -> list[scene.Record]:
 
 def _below(s: Shown) -> tuple[tuple[str, ...], ...]:
     """The lines under each column: what is given, and what psi answers where that is another."""
+    stretch = [r"$\mathrm{eigenvalues\ of}\ Y$"]
+    if not np.allclose(s.back_logs, np.sort(s.logs), atol=NOTHING):
+        stretch.append(rf"$Y':\ {_triple(s.back_logs[::-1])}$")
     degrees = [rf"${_turned(s.x, '')}$"]
     moved = [rf"$\mathbf{{l}} = ({_triple(s.shift)})$"]
     if not s.same:
         degrees.append(rf"${_turned(s.back_x, chr(39))}$")
         if np.linalg.norm(s.back_shift - s.shift) > NOTHING:
             moved.append(rf"$\mathbf{{l}}' = ({_triple(s.back_shift)})$")
-    return (r"$\mathrm{eigenvalues\ of}\ Y$",), tuple(degrees), tuple(moved)
+    return tuple(stretch), tuple(degrees), tuple(moved)
 
 
 def _turned(x: np.ndarray, mark: str) -> str:
@@ -303,7 +306,9 @@ def _legend(s: Shown) -> str:
         else r"\hat{A}\,\mathbf{p} = R S\,\mathbf{p} + \mathbf{l}"
     )
     back = r"(\mathbf{x}, \mathbf{l}, Y)"
-    if not s.same:
+    if not s.returns:
+        back = rf"(\mathbf{{x}}', \mathbf{{l}}', Y'),\ \ {s.symbol}(\psi(\hat{{A}})) \neq \hat{{A}}"
+    elif not s.same:
         moved = r"\mathbf{l}'" if np.linalg.norm(s.back_shift - s.shift) > NOTHING else r"\mathbf{l}"
         back = rf"(\mathbf{{x}}', {moved}, Y),\ \ {s.symbol}(\psi(\hat{{A}})) = \hat{{A}}"
     return rf"${whole}$,   $\psi(\hat{{A}}) = {back}$"

@@ -1,10 +1,9 @@
 """What figure 7.1 shows: parameters, their image, and what psi says of it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-
-from lietool.lie import se3, so3
 
 NOTHING = 1e-9
 """Shorter vectors are none."""
@@ -12,7 +11,12 @@ NOTHING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """The parameters x, l = shift, Y = Q diag(logs) Q^T, their image A, and what psi says of it."""
+    """The parameters x, l = shift, Y = Q diag(logs) Q^T, their image A, and what psi says of it.
+
+    Of the image, S is that of Y alone, R that of x alone, and `way` (n, 3) what (x, l) makes of the origin on
+    the way from 0.  Of psi, `back_logs` are the eigenvalues of its Y; `same` says whether it gives the
+    parameters again, `returns` whether it leads back to A.
+    """
 
     map: str
     x: np.ndarray
@@ -20,9 +24,14 @@ class Shown:
     Q: np.ndarray
     logs: np.ndarray
     A: np.ndarray
+    S: np.ndarray
+    R: np.ndarray
+    way: np.ndarray
     back_x: np.ndarray
     back_shift: np.ndarray
+    back_logs: np.ndarray
     same: bool
+    returns: bool
 
     @property
     def symbol(self) -> str:
@@ -30,26 +39,18 @@ class Shown:
         return r"\varphi_{se}" if self.map == "phi_se" else r"\varphi_{so}"
 
     @property
-    def S(self) -> np.ndarray:
-        """exp(Y)"""
-        return (self.Q * np.exp(self.logs)) @ self.Q.T
-
-    @property
-    def R(self) -> np.ndarray:
-        """The rotation of A."""
-        return so3.exp(self.x)
-
-    @property
     def d(self) -> np.ndarray:
         """The translation of A."""
         return self.A[:3, 3]
 
-    def way(self, n: int = 121) -> np.ndarray:
-        """The way (n, 3) of the origin to d: of the screw motion, or straight."""
-        t = np.linspace(0.0, 1.0, n)[:, None]
-        if self.map == "phi_so":
-            return t * self.shift
-        return se3.exp(t * np.concatenate([self.x, self.shift]))[:, :3, 3]
+
+def parts(
+    phi: Callable[[np.ndarray], np.ndarray], given: np.ndarray, n: int = 121
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the stretch, the rotation, and the way (n, 3) of the origin, that a map makes of parameters."""
+    moved = np.where(np.arange(12) < 6, np.linspace(0.0, 1.0, n)[:, None] * given, 0.0)
+    S, R = (phi(np.where(part, given, 0.0))[:3, :3] for part in (np.arange(12) >= 6, np.arange(12) < 3))
+    return S, R, phi(moved)[:, :3, 3]
 
 
 def unit(name: str, v: tuple[float, float, float]) -> np.ndarray:

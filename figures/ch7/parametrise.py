@@ -4,18 +4,17 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
-from lietool.lie import affine, so3, sym
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
+from lietool.lie import affine, so3
 
 from . import _parametrise_page as page
-from ._parametrise_shown import Shown, unit
+from ._parametrise_shown import Shown, parts, unit
 
 Vector = tuple[float, float, float]
 
 # An angle, radians, or a translation that differs by less is the same; how far off psi may be at most.
 _SAME, _EXACT = 1e-9, 1e-12
-_PSI = {"phi_se": affine.psi_se, "phi_so": affine.psi_so}
-_PHI = {"phi_se": affine.phi_se, "phi_so": affine.phi_so}
+_PHI_SE, _PSI_SE = Library("lietool.lie.affine.phi_se"), Library("lietool.lie.affine.psi_se")
 _UPPER = np.triu_indices(3)
 
 
@@ -66,6 +65,9 @@ def parametrise(
     ),
     tilt: Annotated[float, Param("turn of these axes about the x axis", "deg", -180.0, 180.0)] = -20.0,
     map: Annotated[Literal["phi_se", "phi_so"], Param("of the book, or of Kaji and Ochiai")] = "phi_se",
+    *,
+    phi_se: Library = _PHI_SE,
+    psi_se: Library = _PSI_SE,
 ) -> Drawing:
     """Parametrise: an affine transformation as rotation vector, translation and log-stretch, and back.
 
@@ -80,22 +82,26 @@ def parametrise(
     Q = so3.rotation("x", np.radians(tilt))
     Y = (Q * np.log(factors)) @ Q.T
     given = np.concatenate([x, shift, Y[_UPPER]])
-    A = _PHI[map](given)
-    back = _PSI[map](A)
-    error = float(np.abs(_PHI[map](back) - A).max())
-    if error > _EXACT:
-        raise ArithmeticError(f"parametrise: phi(psi(A)) differs from A by {error:g}")
+    phi, psi = (phi_se, psi_se) if map == "phi_se" else (affine.phi_so, affine.psi_so)
+    A = phi(given)
+    back = psi(A)
+    error = float(np.abs(phi(back) - A).max())
     same = bool(np.abs(back - given).max() < _SAME * max(1.0, float(np.abs(given).max())))
-    shown = Shown(map, x, shift, Q, np.log(factors), A, back[:3], back[3:6], same)
+    S, R, way = parts(phi, given)
+    returns = error <= _EXACT
+    Z = np.zeros((3, 3))
+    Z[_UPPER] = back[6:]
+    logs = np.linalg.eigvalsh(Z, UPLO="U")
+    shown = Shown(map, x, shift, Q, np.log(factors), A, S, R, way, back[:3], back[3:6], logs, same, returns)
     numbers = {
         "parameters": given,
         "A": A,
-        "R": so3.exp(x),
-        "S": sym.exp(Y),
+        "R": R,
+        "S": S,
         "d": A[:3, 3],
         "log_stretch": np.log(factors),
         "principal": back,
         "same": same,
-        "round_trip_below": _EXACT,
+        "round_trip_below": _EXACT if returns else error,
     }
     return Drawing(page.picture(shown), numbers)

@@ -5,6 +5,7 @@ import pytest
 from scipy.linalg import expm, polar
 
 from lietool import figure, paths
+from lietool.lie import affine
 from lietool.render.scene import Label
 
 
@@ -71,6 +72,25 @@ class TestNumbers:
         for kind, kept in (("phi_so", True), ("phi_se", False)):
             shown = drawn(angle=250.0, map=kind).numbers
             assert np.allclose(shown["principal"][3:6], shown["parameters"][3:6]) == kept
+
+
+class TestOtherFunctions:
+    def given(self, **functions):
+        drawing = figure.load("parametrise", (paths.FIGURES,)).draw_with(functions, angle=250.0)
+        texts = [r.text for view in drawing.picture.views for r in view.records if isinstance(r, Label)]
+        return drawing.numbers, " ".join(texts)
+
+    def test_what_does_not_lead_back_is_said(self):
+        def wrong(A):
+            return affine.psi_se(A) * np.repeat([1.0, 2.0], 6)
+
+        numbers, texts = self.given(psi_se=wrong)
+        assert r"\neq" in texts and "Y'" in texts and numbers["round_trip_below"] > 0.01
+        assert r"\neq" not in self.given(psi_se=lambda A: affine.psi_se(A))[1]
+
+    def test_the_steps_are_those_of_the_function(self):
+        numbers, _ = self.given(phi_se=affine.phi_so, psi_se=affine.psi_so)
+        assert numbers["d"] == pytest.approx([0.0, 1.3, 0.7])
 
 
 class TestPicture:
