@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from PIL import Image, ImageSequence
 
 from lietool import figure, paths
 from lietool.cli import command
+from lietool.interp import forms
 from lietool.mesh import io, shapes, topology
 
 GLOBAL = figure.load("global-interp", (paths.FIGURES,))
@@ -380,3 +382,33 @@ class TestFiles:
         file.write_text("<svg/>")
         with pytest.raises(ValueError, match="given together; got only a source"):
             GLOBAL.draw(source=file)
+
+
+class TestOtherForms:
+    FROBENIUS: ClassVar = {
+        "matrix": lambda *given: forms.matrix(*given),
+        "pull": lambda *given: forms.pull(*given),
+    }
+    SIMILARITY: ClassVar = {"similarity": lambda *given: forms.similarity(*given)}
+
+    @pytest.mark.parametrize(("plate_id", "given"), [("B6.4", FROBENIUS), ("B6.7", SIMILARITY)], ids=str)
+    def test_right_ones_find_the_shape_of_the_library(self, plate_id, given, plate):
+        found = GLOBAL.draw_with(given, **GLOBAL.plate_params(plate_id)).numbers
+        wanted = plate(plate_id).numbers
+        for name in ("vertices", "least_det", "area"):
+            assert np.abs(found[name] - wanted[name]).max() < 1e-8, name
+
+    def test_wrong_ones_find_another(self, plate):
+        half = {**self.FROBENIUS, "pull": lambda *given: 0.5 * forms.pull(*given)}
+        found = GLOBAL.draw_with(half, **GLOBAL.plate_params("B6.4")).numbers
+        # About its barycentre the shape is half as large.
+        shapes_of = [x - x.mean(axis=0) for x in (found["vertices"], plate("B6.4").numbers["vertices"])]
+        assert np.abs(shapes_of[0] - 0.5 * shapes_of[1]).max() < 1e-9
+
+    def test_what_holds_nothing_together_is_refused(self):
+        none = {"similarity": lambda p, A: np.zeros((*A.shape[:-2], 6, 6))}
+        with pytest.raises(ValueError, match="a form that holds the shape together"):
+            GLOBAL.draw_with(none, **GLOBAL.plate_params("B6.7"))
+        far = {**self.FROBENIUS, "matrix": lambda *given: 1e-4 * forms.matrix(*given)}
+        with pytest.raises(ValueError, match="over 100 times as large"):
+            GLOBAL.draw_with(far, **GLOBAL.plate_params("B6.4"))
