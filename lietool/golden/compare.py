@@ -148,25 +148,28 @@ def images(
     if sizes[0] != sizes[1] or _same_bytes(expected, actual):
         return Comparison(*sizes, **limits)
 
-    rows, columns = np.nonzero(differing(expected, actual))
-    far = delta_e76(expected[rows, columns], actual[rows, columns])
+    unequal = differing(expected, actual)
+    changed = np.flatnonzero(unequal)
+    # By one index into rows of pixels: a tenth of the time that two indices take.
+    far = delta_e76(*(image.reshape(-1, 3).take(changed, axis=0) for image in (expected, actual)))
     worst = int(far.argmax())
     beyond = far > delta_e
     over = int(np.count_nonzero(beyond))
-    crowd, crowd_at = _crowd(columns[beyond], rows[beyond], expected.shape)
+    rows, columns = np.divmod(changed[beyond], expected.shape[1])
+    crowd, crowd_at = _crowd(columns, rows, expected.shape)
     # Beyond four pixels from the last differing one every mean is zero; the frame keeps the edges reflected.
-    part = _around(rows, columns, expected.shape)
+    part = _around(unequal)
     sums = box_sums(np.subtract(actual[part], expected[part], dtype=np.int16))
     y, x, channel = np.unravel_index(int(np.abs(sums).argmax()), sums.shape)
     largest = int(sums[y, x, channel])
     return Comparison(
         *sizes,
-        differing=rows.size,
+        differing=changed.size,
         over=over,
         crowd=crowd,
         crowd_at=crowd_at,
         largest_delta_e=float(far[worst]),
-        largest_delta_e_at=(int(columns[worst]), int(rows[worst])),
+        largest_delta_e_at=(int(changed[worst]) % sizes[0][0], int(changed[worst]) // sizes[0][0]),
         lowpass=largest / BOX**2,
         lowpass_at=(int(x) + part[1].start, int(y) + part[0].start),
         lowpass_channel="RGB"[channel],
@@ -263,20 +266,27 @@ def _crowd(x: np.ndarray, y: np.ndarray, shape: tuple[int, ...]) -> tuple[int, t
 
 
 def _lab(colour: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    r, g, b = (_LINEAR[colour[:, channel]] for channel in range(3))
+    # No byte is out of the table's range; clipping spares a look at each.
+    r, g, b = _LINEAR.take(np.ascontiguousarray(colour.T), mode="clip")
     x, y, z = (_lab_root(row[0] * r + row[1] * g + row[2] * b) for row in _XYZ)
     return 116.0 * y, 500.0 * (x - y), 200.0 * (y - z)
 
 
 def _lab_root(t: np.ndarray) -> np.ndarray:
-    return np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29)
+    root = np.cbrt(t)
+    dark = t <= (6 / 29) ** 3
+    root[dark] = t[dark] * (29 / 6) ** 2 / 3 + 4 / 29
+    return root
 
 
-def _around(rows: np.ndarray, columns: np.ndarray, shape: tuple[int, ...]) -> tuple[slice, slice]:
-    half = BOX // 2
-    top, bottom = int(rows.min()) - half, int(rows.max()) + half + 1
-    left, right = int(columns.min()) - half, int(columns.max()) + half + 1
-    return slice(max(top, 0), min(bottom, shape[0])), slice(max(left, 0), min(right, shape[1]))
+def _around(unequal: np.ndarray) -> tuple[slice, slice]:
+    """The part of a picture that holds all marked pixels and a box around each."""
+    return _span(np.logical_or.reduce(unequal, axis=1)), _span(np.logical_or.reduce(unequal, axis=0))
+
+
+def _span(marked: np.ndarray) -> slice:
+    first, last = np.flatnonzero(marked)[[0, -1]]
+    return slice(max(int(first) - BOX // 2, 0), int(last) + BOX // 2 + 1)
 
 
 def _same_bytes(a: np.ndarray, b: np.ndarray) -> bool:
