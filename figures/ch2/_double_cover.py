@@ -8,11 +8,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lietool.figure import Library
 from lietool.lie import quaternion, so3
 
 FULL = 2.0 * np.pi
-MULTIPLY, ACT = Library("lietool.lie.quaternion.multiply"), Library("lietool.lie.quaternion.act")
 # Of two quaternions; of a quaternion and a vector.
 Map = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
@@ -27,8 +25,8 @@ class Shown:
     stages: np.ndarray
     at_stages: np.ndarray
     now: np.ndarray
-    multiply: Map = MULTIPLY
-    act: Map = ACT
+    multiply: Map = quaternion.multiply
+    act: Map = quaternion.act
 
     @property
     def at_one(self) -> bool:
@@ -76,7 +74,9 @@ def _by_products(q: np.ndarray, multiply: Map) -> np.ndarray:
     return np.swapaxes(multiply(multiply(q, np.eye(4)[1:]), quaternion.conjugate(q))[..., 1:], -1, -2)
 
 
-def lift(u: np.ndarray, start: np.ndarray, theta: ArrayLike, multiply: Map = MULTIPLY) -> np.ndarray:
+def lift(
+    u: np.ndarray, start: np.ndarray, theta: ArrayLike, multiply: Map = quaternion.multiply
+) -> np.ndarray:
     """Return the quaternions exp(theta u / 2) start (..., 4), continuous in theta."""
     half = 0.5 * np.asarray(theta, float)
     q = quaternion.exp(half[..., None] * u)

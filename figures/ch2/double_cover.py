@@ -12,10 +12,11 @@ from lietool.render.marks import LETTER, LETTER_BEFORE, beyond, curved_arrow, le
 from lietool.render.plot import Axes, number
 
 from . import _directions
-from ._double_cover import ACT, FULL, MULTIPLY, Shown, distances, lift
+from ._double_cover import FULL, Shown, distances, lift
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
+_MULTIPLY, _ACT = Library("lietool.lie.quaternion.multiply"), Library("lietool.lie.quaternion.act")
 # The solid is looked at from here; on the sphere it is turned so that it looks the same.
 LOOK = (1.0, 0.45, 0.38)
 _SOLID: Box = (20.0, 372.0, 440.0, 440.0)
@@ -61,8 +62,8 @@ def double_cover(
         0.0,
     ),
     *,
-    multiply: Library = MULTIPLY,
-    act: Library = ACT,
+    multiply: Library = _MULTIPLY,
+    act: Library = _ACT,
 ) -> Drawing:
     """The double cover: while a solid turns twice, its unit quaternion goes round once.
 
