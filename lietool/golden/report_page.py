@@ -14,7 +14,8 @@ from lietool.golden.compare_numbers import Difference
 from lietool.golden.report import CHANGED, FAILED, PASSED, Entry
 
 _HERE = Path(__file__).parent / "page"
-_SCRIPTS = ("viewer.js", "review.js", "page.js")
+_SCRIPTS = ("viewer.js", "review.js", "theme.js", "page.js")
+_CALLED = {"expected": "expected", "actual": "actual"}
 # Twice the size that it has in the list, for screens of fine pixels.
 _THUMB = (128, 96)
 _MOST_PLACES = 24
@@ -49,6 +50,7 @@ def render(
         plates=[_plate(each) for each in entries],
         report=_digest(entries),
         review=review,
+        called=_CALLED,
         style=Markup(_read("page.css")),
         script=Markup("\n".join(map(_read, _SCRIPTS))),
     )
