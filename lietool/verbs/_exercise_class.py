@@ -111,9 +111,7 @@ def work(tasks: Sequence[Task]) -> Iterator[Record]:
     """Grade texts one after the other, in the process that this runs in."""
     for task in tasks:
         exercise = load.load(task.exercise)
-        yield _exercise_journal.record(
-            grade(exercise, task.source, seed=task.seed, picture=task.picture)
-        )
+        yield _exercise_journal.record(grade(exercise, task.source, seed=task.seed, picture=task.picture))
 
 
 def _marked(submission: Submission, made: Record | str | None) -> Marked:

@@ -99,7 +99,7 @@ class Journal:
 
 @functools.cache
 def _edition() -> str:
-    """Return a digest of all sources that marks depend on: ours, those of the figures and of the exercises."""
+    """Return a digest of all sources that marks depend on, of figures and exercises too."""
     folders = [paths.PACKAGE, paths.FIGURES, paths.EXERCISES]
     if own := figure.project():
         folders += [own / "figures", own / "exercises"]

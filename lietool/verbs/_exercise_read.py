@@ -76,7 +76,8 @@ def read(paths: Sequence[Path], name: str | None) -> list[Submission]:
         paths = list(_started(name))
         if not paths:
             raise _studio.Stop(
-                2, "nothing has been started in this folder. Write `lietool exercise start NAME`, or name a file"
+                2,
+                "nothing has been started in this folder. Write `lietool exercise start NAME`, or name a file",
             )
     ordered = sorted(dict.fromkeys(paths), key=lambda path: (path.name, str(path)))
     return [_read(path, name, known) for path in ordered]
@@ -98,7 +99,9 @@ def _read(path: Path, name: str | None, known: Collection[str]) -> Submission:
         # An editor on Windows begins a file with a mark.
         source = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        return Submission(file, path, name or "", trouble=f"it is no text in UTF-8: byte {error.start} is not")
+        return Submission(
+            file, path, name or "", trouble=f"it is no text in UTF-8: byte {error.start} is not"
+        )
     if "\0" in source:
         return Submission(file, path, name or "", trouble="it is no text: it has a NUL character")
     exercise, trouble = _meant(source, name, known)
@@ -135,5 +138,8 @@ def _meant(source: str, name: str | None, known: Collection[str]) -> tuple[str, 
         first = f"{load.HEADER}NAME"
         return "", f"its first lines do not say what it is for ({first}). Give --exercise NAME"
     if said not in known:
-        return "", f"no exercise {quoted(said)}.{nearest(said, known)} Correct its first line, or give --exercise"
+        return (
+            "",
+            f"no exercise {quoted(said)}.{nearest(said, known)} Correct its first line, or give --exercise",
+        )
     return said, ""

@@ -82,7 +82,9 @@ def _page(exercise: Exercise, markdown: bool) -> str:
     rows = [f"- {check.title}: {_points(check.points)}" for check in exercise.checks]
     rows.append(f"- the picture {exercise.picture.plate}: {_points(exercise.picture.points)}")
     head = f"# {exercise.number}. {exercise.title}{equations}"
-    return "\n".join([head, "", _exercise_tex.readable(text.strip(), markdown=markdown), "", "## Checks", "", *rows])
+    return "\n".join(
+        [head, "", _exercise_tex.readable(text.strip(), markdown=markdown), "", "## Checks", "", *rows]
+    )
 
 
 def _program(exercise: Exercise) -> str:

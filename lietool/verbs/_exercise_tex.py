@@ -6,7 +6,9 @@ It is for reading, not for typesetting: what it does not know it leaves as it is
 import re
 
 _LETTERS = {
-    **dict(zip("alpha beta gamma delta zeta eta theta iota kappa lambda mu".split(), "αβγδζηθικλμ", strict=True)),
+    **dict(
+        zip("alpha beta gamma delta zeta eta theta iota kappa lambda mu".split(), "αβγδζηθικλμ", strict=True)
+    ),
     **dict(zip("nu xi pi rho sigma tau phi chi psi omega".split(), "νξπρστφχψω", strict=True)),
     **dict(zip("Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega".split(), "ΓΔΘΛΞΠΣΦΨΩ", strict=True)),
     **{"varepsilon": "ε", "epsilon": "ε", "varphi": "φ", "ell": "ℓ", "nabla": "∇", "partial": "∂"},
@@ -32,13 +34,26 @@ _DOUBLE = {"R": "ℝ", "C": "ℂ", "H": "ℍ", "N": "ℕ", "Z": "ℤ", "Q": "ℚ
 # Over a letter, as a combining sign.
 _OVER = {"hat": "\u0302", "bar": "\u0304", "tilde": "\u0303", "dot": "\u0307", "vec": "\u20d7"}
 _OVER |= {"overline": "\u0304", "widehat": "\u0302", "widetilde": "\u0303"}
-_PLAIN = ("mathbf", "mathrm", "mathit", "mathfrak", "mathcal", "mathsf", "boldsymbol", "text", "textrm", "textbf")
+_PLAIN = (
+    "mathbf",
+    "mathrm",
+    "mathit",
+    "mathfrak",
+    "mathcal",
+    "mathsf",
+    "boldsymbol",
+    "text",
+    "textrm",
+    "textbf",
+)
 _PLAIN += ("operatorname", "bm")
 _HIGH = dict(zip("0123456789+-()nTit", "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻⁽⁾ⁿᵀⁱᵗ", strict=True)) | {"−": "⁻"}
 _LOW = dict(zip("0123456789+-()aeijkmnopx", "₀₁₂₃₄₅₆₇₈₉₊₋₍₎ₐₑᵢⱼₖₘₙₒₚₓ", strict=True)) | {"−": "₋"}
 _MATH = re.compile(r"\$\$(.+?)\$\$|(?<![\\$])\$([^$]+?)\$", re.DOTALL)
 _CODE = re.compile(r"(```.*?```|`[^`\n]*`)", re.DOTALL)
-_MATRIX = re.compile(r"\\begin\{([a-z]*matrix|cases|aligned|array)\}(?:\{[lcr| ]*\})?(.*?)\\end\{\1\}", re.DOTALL)
+_MATRIX = re.compile(
+    r"\\begin\{([a-z]*matrix|cases|aligned|array)\}(?:\{[lcr| ]*\})?(.*?)\\end\{\1\}", re.DOTALL
+)
 _GROUP = r"\{((?:[^{}]|\{[^{}]*\})*)\}"
 _FRACTION = re.compile(rf"\\[dt]?frac\s*{_GROUP}\s*{_GROUP}")
 _ROOT = re.compile(rf"\\sqrt\s*{_GROUP}")
@@ -142,5 +157,7 @@ def _grouped(inner: str, always: bool = False) -> str:
 
 
 def _matrix(body: str) -> str:
-    rows = [", ".join(cell.strip() for cell in row.split("&")) for row in re.split(r"\\\\", body) if row.strip()]
+    rows = [
+        ", ".join(cell.strip() for cell in row.split("&")) for row in re.split(r"\\\\", body) if row.strip()
+    ]
     return f"[{' ; '.join(rows)}]"

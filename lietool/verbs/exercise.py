@@ -47,7 +47,9 @@ def list_(as_json: bool) -> None:
         click.echo(json.dumps(list(map(_exercise_show.brief, found)), indent=2, ensure_ascii=False))
         return
     if not found:
-        raise _studio.Stop(2, "there is no exercise. Write one: DIR/exercises/NAME.py, and give --project DIR")
+        raise _studio.Stop(
+            2, "there is no exercise. Write one: DIR/exercises/NAME.py, and give --project DIR"
+        )
     heads = ("number", "name", "equations", "plate", "points", "title")
     cells = [
         (str(x.number), x.name, ", ".join(x.equations), x.picture.plate, str(x.total), x.title) for x in found
@@ -85,7 +87,9 @@ def start(name: str, folder: Path) -> None:
 
 @command.command()
 @click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path(path_type=Path))
-@click.option("--exercise", "name", metavar="NAME", help="What the files are for; else their first lines say.")
+@click.option(
+    "--exercise", "name", metavar="NAME", help="What the files are for; else their first lines say."
+)
 @click.option(
     "--seed", metavar="N", type=click.IntRange(0), default=0, show_default=True, help="Of random inputs."
 )
