@@ -74,7 +74,7 @@ def _face(solid: solids.Solid, X: Array, N: Array) -> list[Record]:
     places = [place for name, place in solid.marks.items() if name.startswith("eye")]
     ball, faces, normals = balls.sphere(_NOSE, nose, 16)
     eyes = mesh_look.eyes(X, N, places, solid.eye, front)
-    return [*eyes, Surface(ball, faces, style.INK, normals)]
+    return [*eyes, Surface(ball, faces, style.PUPIL, normals)]
 
 
 def hatched(family: Family, X: Array, lacking: Array, camera: Camera, box: Box) -> list[Record]:

@@ -108,13 +108,14 @@ def _(record: Surface, lens: Lens) -> list[Batch]:
         normals = np.repeat((normals / np.where(length > 0, length, 1.0))[:, None], 3, axis=1)
     else:
         normals = np.asarray(record.normals, float).take(faces, axis=0)
-    color = lens.theme.rgba(record.color, len(vertices), record.alpha).take(faces, axis=0)
+    shadow = record.material == "shadow"
+    color = lens.theme.rgba(record.color, len(vertices), record.alpha, shadow=shadow).take(faces, axis=0)
     material = np.full((*faces.shape, 1), MATERIALS[record.material])
     data = np.concatenate([corners, normals, color, material], axis=-1).astype("f4")
     depth = lens.depth((corners[:, 0] + corners[:, 1] + corners[:, 2]) / 3.0)
     if record.material == "glass":
         return _walls(data, corners, normals, depth, lens)
-    if record.material == "shadow":
+    if shadow:
         # Under everything; in its order by depth it would part each run of lines into hundreds.
         depth = np.full(len(depth), np.finfo(np.float32).max)
     return [Batch("surface", data, depth, bool(color[..., 3].min() >= 1.0))]
