@@ -66,6 +66,11 @@ class Mix:
 Color = str | Mix | np.ndarray
 
 
+def light(levels: np.ndarray) -> np.ndarray:
+    """Return the linear light of levels of sRGB, 0 to 1; of the same shape."""
+    return np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
+
+
 @dataclass(frozen=True)
 class Theme:
     """How a picture looks; which colour a meaning has is said by the tones of `style`.
@@ -114,9 +119,7 @@ class Theme:
 
     def linear(self, color: str, alpha: float = 1.0) -> np.ndarray:
         """Return a colour as linear red, green, blue and the opacity, not premultiplied; shape (4,)."""
-        levels = self.srgb(color) / 255.0
-        rgb = np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
-        return np.append(rgb, alpha)
+        return np.append(light(self.srgb(color) / 255.0), alpha)
 
     def rgba(self, color: Color, n: int, alpha: float = 1.0, *, shadow: bool = False) -> np.ndarray:
         """Return the colours of `n` points as linear RGBA, their opacities times `alpha`; shape (n, 4)."""
