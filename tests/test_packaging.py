@@ -1,4 +1,4 @@
-"""The wheel: figures and goldens travel inside the package, and are found there."""
+"""The wheel: figures, exercises and goldens travel inside the package, and are found there."""
 
 import os
 import subprocess
@@ -11,7 +11,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 FOUND = (
     "from lietool import figure, paths; figure.load('slerp'); "
-    "print(paths.FIGURES, paths.GOLDEN, len(figure.plates()), sep='\\n')"
+    "from lietool.exercise import load; load.load('slerp'); "
+    "print(paths.FIGURES, paths.EXERCISES, paths.GOLDEN, len(figure.plates()), sep='\\n')"
 )
 
 
@@ -38,6 +39,7 @@ def site(tmp_path_factory):
     ("inside", "beside", "suffixes"),
     [
         ("figures", "figures", (".py",)),
+        ("exercises", "exercises", (".py",)),
         ("goldens", "golden", (".png", ".json", ".md")),
         (".", "lietool", (".py", ".frag", ".toml", ".html", ".css", ".js")),
     ],
@@ -62,6 +64,7 @@ def test_figures_and_goldens_are_found_inside(site, tmp_path):
         text=True,
     )
     assert done.returncode == 0, done.stderr
-    figures, goldens, count = done.stdout.splitlines()
+    figures, exercises, goldens, count = done.stdout.splitlines()
     assert figures == str(site / "lietool" / "figures") and int(count) > 0
+    assert exercises == str(site / "lietool" / "exercises")
     assert goldens == str(site / "lietool" / "goldens")

@@ -1,12 +1,13 @@
 """Figure 2.5 of the book."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 from lietool.lie import so3
 from lietool.render import scene, solids, style
 from lietool.render.camera import Box, Camera, around
@@ -24,6 +25,7 @@ _TITLE, _LEGEND = 846.0, 52.0
 _TILT = 0.45
 # A part of x that is shorter than this, as a fraction of x, is not there.
 _ZERO = 1e-9
+_ROTATION = Library("lietool.lie.so3.from_axis_angle")
 # The last is about the length of the name of a dashed part.
 _SHAFT, _AXIS, _TURN, _SEEN, _LONG = 0.017, 1.16, 0.14, 0.25, 0.45
 _X, _U, _ALONG = r"\mathbf{x}", r"\mathbf{u}", r"(\mathbf{u}\cdot\mathbf{x})\,\mathbf{u}"
@@ -32,7 +34,7 @@ _ACROSS, _CROSS = r"\mathbf{x}_{\!\perp}", r"\mathbf{u}\times\mathbf{x}"
 
 @dataclass(frozen=True, eq=False)
 class _Shown:
-    """The vectors of (2.14), and the unit vectors v, w = u x v in the plane of the circle."""
+    """The vectors of (2.14), the way (n, 3) to Rx, and v, w = u x v, unit vectors in the circle's plane."""
 
     u: np.ndarray
     v: np.ndarray
@@ -40,6 +42,7 @@ class _Shown:
     theta: float
     x: np.ndarray
     image: np.ndarray
+    way: np.ndarray
 
     @property
     def center(self) -> np.ndarray:
@@ -85,6 +88,8 @@ def axis_angle(
         0.6,
     ),
     angle: Annotated[float, Param("angle of the rotation", "deg", -720.0, 720.0)] = 112.0,
+    *,
+    rotation: Library = _ROTATION,
 ) -> Drawing:
     """Axis and angle: the rotation about u carries x along a circle, by Rodrigues' formula.
 
@@ -97,12 +102,12 @@ def axis_angle(
     axis = _directions.unit("u", u)
     turned = _directions.unit("x", x) if any(x) else np.zeros(3)
     theta = float(np.deg2rad(angle))
-    shown = parts(axis, turned, theta)
+    shown = parts(axis, turned, theta, rotation)
     across = turned - shown.center
     numbers = {
         "axis": axis,
         "vector": turned,
-        "rotation": so3.from_axis_angle(axis, theta),
+        "rotation": rotation(axis, theta),
         "image": shown.image,
         "along": shown.center,
         "across": across,
@@ -112,12 +117,16 @@ def axis_angle(
     return Drawing(_picture(shown), numbers)
 
 
-def parts(u: np.ndarray, x: np.ndarray, theta: float) -> _Shown:
+def parts(
+    u: np.ndarray, x: np.ndarray, theta: float, rotation: Callable[..., np.ndarray] = _ROTATION
+) -> _Shown:
     """Return the vectors of (2.14); of an x on the axis, any direction across it serves as v."""
     across = x - (u @ x) * u
     radius = float(np.linalg.norm(across))
     v = across / radius if radius > _ZERO else solids.frame_along(u)[:, 0]
-    return _Shown(u, v, np.cross(u, v), theta, x, so3.act(so3.from_axis_angle(u, theta), x))
+    # One at a time, so that a function that takes no batches is shown too.
+    way = [so3.act(rotation(u, float(angle)), x) for angle in _along(_first_turn(theta))]
+    return _Shown(u, v, np.cross(u, v), theta, x, so3.act(rotation(u, theta), x), np.stack(way))
 
 
 def camera_for(s: _Shown) -> Camera:
@@ -190,7 +199,7 @@ def _disc(s: _Shown) -> list[scene.Record]:
     if s.radius <= _ZERO:
         return []
     rim = s.around(s.radius, np.linspace(0.0, 2.0 * np.pi, 181))
-    part = s.around(s.radius, _along(np.clip(s.theta, -2.0 * np.pi, 2.0 * np.pi)))
+    part = s.around(s.radius, _along(_first_turn(s.theta)))
     records: list[scene.Record] = []
     for edge, alpha in ((rim, 0.04), (part, 0.12)):
         fan = np.concatenate([s.center[None], edge])
@@ -198,6 +207,10 @@ def _disc(s: _Shown) -> list[scene.Record]:
             scene.Surface(fan, solids.fan_faces(len(fan)), style.ARC, material="flat", alpha=alpha)
         )
     return [*records, scene.Lines(rim, style.ARC, style.EDGE, 0.9)]
+
+
+def _first_turn(theta: float) -> float:
+    return min(max(theta, -2.0 * np.pi), 2.0 * np.pi)
 
 
 def _along(theta: float) -> np.ndarray:
@@ -215,8 +228,7 @@ def _circle(s: _Shown, camera: Camera) -> list[scene.Record]:
     records = curved_arrow(lifted, style.ARC_TEXT, 0.010, 4.2)
     if s.radius <= _ZERO:
         return [*records, scene.Points([s.x], style.ARC, 12.0, rim=style.PAPER)]
-    part = s.around(s.radius, _along(np.clip(s.theta, -2.0 * np.pi, 2.0 * np.pi)))
-    return [*records, *curved_arrow(part, style.ARC, 0.014)]
+    return [*records, *curved_arrow(s.way, style.ARC, 0.014)]
 
 
 def _vectors(s: _Shown) -> list[scene.Record]:

@@ -68,7 +68,7 @@ def shape(value: Any) -> str:
 
 def _pairs(got: Any, want: Any) -> list[tuple[Array, Array]]:
     many = isinstance(want, tuple)
-    if many != isinstance(got, tuple | list) or (many and len(got) != len(want)):
+    if (not isinstance(got, tuple | list) or len(got) != len(want)) if many else isinstance(got, tuple):
         raise UnlikeError(f"it returned {shape(got)}; wanted {shape(want)}")
     pairs = list(zip(got, want, strict=True)) if many else [(got, want)]
     made = []

@@ -1,14 +1,14 @@
 """Grading: what a student's functions return is judged here, in the process that they do not run in."""
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from lietool.exercise import compare, diagnose, texts
-from lietool.exercise.calls import Functions
+from lietool.exercise.calls import Caller, Functions
 from lietool.exercise.outcome import Finding, Graded, Outcome, Shown
 from lietool.exercise.record import Case, Check, Claim, Exercise
 from lietool.exercise.student import Limits, Student, Trouble
@@ -59,29 +59,47 @@ def grade(
     with Student(
         source, functions=names, allowed=exercise.allowed, limits=limits or Limits(), name=name, seed=seed
     ) as student:
-        trial = _Trial(exercise, student, seed)
-        outcomes = [trial.check(index, check) for index, check in enumerate(exercise.checks)]
-        shown = None
-        if picture:
-            outcome, shown = trial.picture()
-            outcomes.append(outcome)
+        made = judge(exercise, student, seed=seed, picture=picture)
         printed = student.printed
-    return Graded(
-        exercise.name,
-        exercise.title,
-        tuple(outcomes),
-        diagnose.sentences(exercise, trial.seen),
-        seed,
-        hashlib.sha256(source.encode()).hexdigest(),
-        printed,
-        shown,
-    )
+    return replace(made, digest=hashlib.sha256(source.encode()).hexdigest(), printed=printed)
+
+
+def judge(exercise: Exercise, student: Caller, *, seed: int = 0, picture: bool = True) -> Graded:
+    """Grade functions, wherever they run.
+
+    Parameters
+    ----------
+    exercise : Exercise
+        What they are for.
+    student : Caller
+        What calls them.
+    seed, picture
+        As of `grade`.
+
+    Returns
+    -------
+    Graded
+        The marks, and why; without digest.
+
+    Raises
+    ------
+    ExerciseError
+        As `grade`.
+    """
+    trial = _Trial(exercise, student, seed)
+    outcomes = [trial.check(index, check) for index, check in enumerate(exercise.checks)]
+    shown = None
+    if picture:
+        outcome, shown = trial.picture()
+        outcomes.append(outcome)
+    diagnosis = diagnose.sentences(exercise, trial.seen)
+    return Graded(exercise.name, exercise.title, tuple(outcomes), diagnosis, seed, shown=shown)
 
 
 class _Trial:
     """One submission while it is tried: what came is kept for a diagnosis."""
 
-    def __init__(self, exercise: Exercise, student: Student, seed: int) -> None:
+    def __init__(self, exercise: Exercise, student: Caller, seed: int) -> None:
         self.exercise, self.student, self.seed = exercise, student, seed
         self.seen: list[diagnose.Seen] = []
         self._late: dict[str, int] = {}
@@ -159,7 +177,9 @@ class _Trial:
         else:
             passes, shown = picture.compared(wanted.plate, image)
         shown = replace(shown, says=trouble or shown.says)
-        finding = Finding(f"plate {wanted.plate}", passes, off="" if passes else shown.says, trouble=trouble)
+        finding = Finding(
+            f"plate {wanted.plate}", passes, off="" if passes or trouble else shown.says, trouble=trouble
+        )
         points = wanted.points if passes else 0
         return Outcome(f"the picture {wanted.plate}", "picture", points, wanted.points, (finding,)), shown
 
@@ -175,8 +195,11 @@ def _refusal(case: Case, given: str, got: Any, trouble: Trouble | None) -> Findi
 
 
 def _claimed(claim: Claim) -> Finding:
-    given = texts.given((), claim.given)
-    return _judged(claim.says, given, claim.got, claim.want, compare.apart, claim.tolerance)
+    given, want = texts.given((), claim.given), claim.want
+    if not isinstance(want, tuple):
+        # One side may hold for all of a batch.
+        want = np.broadcast_to(want, np.broadcast_shapes(np.shape(want), np.shape(claim.got)))
+    return _judged(claim.says, given, claim.got, want, compare.apart, claim.tolerance)
 
 
 def _judged(
@@ -195,15 +218,8 @@ def _judged(
     # Also where it is nan.
     if off <= tolerance:
         return Finding(says, True)
-    wanted, came = texts.beside(_like(got, want), want)
+    wanted, came = texts.beside(got, want)
     return Finding(says, False, given, wanted, came, f"{off:.2g}, allowed {tolerance:.2g}")
-
-
-def _like(got: Any, want: Any) -> Any:
-    """Make of a list that stands for a tuple one, and of a claim's number an array as large as the other."""
-    if isinstance(want, tuple):
-        return tuple(got)
-    return np.broadcast_to(np.asarray(got), np.shape(want)) if not isinstance(got, Sequence) else got
 
 
 def _told(error: Trouble | compare.UnlikeError) -> str:

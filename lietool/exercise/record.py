@@ -90,7 +90,7 @@ class Claim:
     says : str
         The law: "R^T R = 1".
     got, want : array_like
-        Both sides.
+        Both sides; `want` may be one for all of a batch.
     given : tuple
         What they were computed for, to be shown.
     tolerance : float

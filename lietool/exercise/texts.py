@@ -7,6 +7,8 @@ import numpy as np
 
 # What fits in a line; of more, one entry is shown.
 _MOST = 16
+# Beside the largest entry of an array, what is less than this is no number but what rounding has left.
+_DUST = 1e-14
 
 
 def value(x: Any) -> str:
@@ -21,9 +23,25 @@ def value(x: Any) -> str:
     if array.dtype.kind not in "fiubc":
         return "no numbers"
     if not array.ndim:
-        return f"{array[()]:.7g}"
-    text = np.array2string(array, precision=6, separator=", ", suppress_small=False, max_line_width=10**6)
-    return " ".join(text.split())
+        return _number(array[()], 10)
+    return _row(_without_dust(array))
+
+
+def _row(array: np.ndarray) -> str:
+    if not array.ndim:
+        return _number(array[()], 6)
+    return f"[{', '.join(_row(part) for part in array)}]"
+
+
+def _number(x: Any, digits: int) -> str:
+    # A zero has no sign that anybody should look at.
+    return f"{x + 0:.{digits}g}" if np.asarray(x).dtype.kind != "b" else str(x)
+
+
+def _without_dust(array: np.ndarray) -> np.ndarray:
+    """What rounding leaves in place of a zero, as a zero."""
+    size = np.abs(array[np.isfinite(array)]).max(initial=0.0)
+    return np.where(np.abs(array) < _DUST * size, array.dtype.type(0), array)
 
 
 def given(names: Sequence[str], args: Sequence[Any]) -> str:
@@ -41,7 +59,7 @@ def beside(got: Any, want: Any) -> tuple[str, str]:
     Parameters
     ----------
     got, want : array_like or tuple of array_like
-        Results of the same shapes.
+        Results of the same shapes, or of shapes that broadcast.
 
     Returns
     -------
@@ -51,7 +69,7 @@ def beside(got: Any, want: Any) -> tuple[str, str]:
     if isinstance(want, tuple):
         pairs = [beside(a, b) for a, b in zip(got, want, strict=True)]
         return "; ".join(a for a, _ in pairs), "; ".join(b for _, b in pairs)
-    a, b = np.asarray(got), np.asarray(want)
+    a, b = np.broadcast_arrays(got, want)
     if b.size <= _MOST:
         return value(b), value(a)
     with np.errstate(invalid="ignore", over="ignore"):
