@@ -35,7 +35,8 @@ def submission(
     ----------
     about : mapping
         ``exercise``, ``title``, ``marks``, ``of``, ``checks`` with their ``findings``, ``diagnosis``,
-        ``seed``, ``digest``, ``printed``, ``trouble``, and ``picture`` with the ``plate`` and what it ``says``.
+        ``seed``, ``digest``, ``printed``, ``trouble``, and ``picture`` with the ``plate`` and what it
+        ``says``.
     file : str
         What was handed in.
     expected, actual : bytes, optional

@@ -61,7 +61,7 @@ def write(
 def _page(each: Marked, notes: Sequence[str]) -> str:
     made = each.record
     assert made is not None
-    about = made.about
+    about = {**made.about, "trouble": _exercise_tell.trouble(made.about)}
     expected = _reference(about["picture"]["plate"]) if about["picture"] else None
     return marks_page.submission(
         about,

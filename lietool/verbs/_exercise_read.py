@@ -77,7 +77,7 @@ def read(paths: Sequence[Path], name: str | None) -> list[Submission]:
         if not paths:
             raise _studio.Stop(
                 2,
-                "nothing has been started in this folder. Write `lietool exercise start NAME`, or name a file",
+                "nothing has been started in this folder. Write lietool exercise start NAME, or name a file",
             )
     ordered = sorted(dict.fromkeys(paths), key=lambda path: (path.name, str(path)))
     return [_read(path, name, known) for path in ordered]
@@ -99,9 +99,7 @@ def _read(path: Path, name: str | None, known: Collection[str]) -> Submission:
         # An editor on Windows begins a file with a mark.
         source = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        return Submission(
-            file, path, name or "", trouble=f"it is no text in UTF-8: byte {error.start} is not"
-        )
+        return Submission(file, path, name or "", trouble=f"it is no text: byte {error.start} is not UTF-8")
     if "\0" in source:
         return Submission(file, path, name or "", trouble="it is no text: it has a NUL character")
     exercise, trouble = _meant(source, name, known)
@@ -140,6 +138,6 @@ def _meant(source: str, name: str | None, known: Collection[str]) -> tuple[str, 
     if said not in known:
         return (
             "",
-            f"no exercise {quoted(said)}.{nearest(said, known)} Correct its first line, or give --exercise",
+            f"no exercise {quoted(said)}.{nearest(said, known)} Correct it, or give --exercise",
         )
     return said, ""

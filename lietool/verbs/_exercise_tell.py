@@ -1,4 +1,4 @@
-"""Marks in a terminal: one submission with all that is wrong in it, or a class with what it got wrong most."""
+"""Marks in a terminal: one submission with what is wrong in it, or a class and what it got wrong most."""
 
 import textwrap
 from collections import Counter
@@ -66,7 +66,7 @@ def rows(marked: Sequence[Marked], exercises: Mapping[str, Exercise], picture: b
         if each.record is not None:
             about = each.record.about
             checks = {check["title"]: check["points"] for check in about["checks"]}
-            said = " ".join([*filter(None, [about["trouble"]]), *about["diagnosis"]])
+            said = " ".join(about["diagnosis"]) or trouble(about)
             made.append(Row(mine.file, mine.exercise, about["marks"], about["of"], checks, said, mine.digest))
             continue
         name = mine.exercise or only
@@ -74,6 +74,16 @@ def rows(marked: Sequence[Marked], exercises: Mapping[str, Exercise], picture: b
         none = dict.fromkeys(all_, 0)
         made.append(Row(mine.file, name, 0, sum(all_.values()), none, each.trouble, mine.digest))
     return made
+
+
+def trouble(about: Mapping[str, Any]) -> str:
+    """Return what kept a submission from giving any value, as a syntax error does; empty if it gave one."""
+    if about["trouble"]:
+        return about["trouble"]
+    findings = [finding for check in about["checks"] for finding in check["findings"]]
+    if any(not finding["trouble"] for finding in findings):
+        return ""
+    return next((finding["trouble"] for finding in findings), "")
 
 
 def one(about: Mapping[str, Any], picture: str) -> None:
@@ -90,10 +100,10 @@ def one(about: Mapping[str, Any], picture: str) -> None:
     cells = [(x["title"], f"{x['points']} of {x['of']}", _word(x)) for x in about["checks"]]
     cells.append(("", f"{about['marks']} of {about['of']}", ""))
     _table.show(("check", "points", "verdict"), cells, verdict=2)
-    if about["trouble"]:
-        click.echo(f"\n{printable(about['trouble'])}")
+    if never := trouble(about):
+        click.echo("\n" + click.style("It gave no value:", bold=True) + f" {printable(never)}")
     for check in about["checks"]:
-        if not check["passed"]:
+        if not check["passed"] and not never:
             click.echo("\n" + "\n".join(_lines(check)))
     if about["printed"]:
         click.echo("\nWhat it printed:")

@@ -1,18 +1,19 @@
 r"""Formulas of a statement as plain text for a terminal: ``$\theta_3 \in \mathbb{R}$`` is "θ₃ ∈ ℝ".
 
-It is for reading, not for typesetting: what it does not know it leaves as it is written, without the backslash.
+It is for reading, not for typesetting: what it does not know it leaves as it is written, without a backslash.
 """
 
 import re
 
-_LETTERS = {
-    **dict(
-        zip("alpha beta gamma delta zeta eta theta iota kappa lambda mu".split(), "αβγδζηθικλμ", strict=True)
-    ),
-    **dict(zip("nu xi pi rho sigma tau phi chi psi omega".split(), "νξπρστφχψω", strict=True)),
-    **dict(zip("Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega".split(), "ΓΔΘΛΞΠΣΦΨΩ", strict=True)),
-    **{"varepsilon": "ε", "epsilon": "ε", "varphi": "φ", "ell": "ℓ", "nabla": "∇", "partial": "∂"},
-}
+# Names and letters in turn.
+_GREEK = re.findall(
+    r"\S+",
+    """
+    alpha α beta β gamma γ delta δ zeta ζ eta η theta θ iota ι kappa κ lambda λ mu μ nu ν xi ξ pi π rho ρ
+    sigma σ tau τ phi φ chi χ psi ψ omega ω Gamma Γ Delta Δ Theta Θ Lambda Λ Xi Ξ Pi Π Sigma Σ Phi Φ Psi Ψ
+    Omega Ω varepsilon ε epsilon ε varphi φ ell ℓ nabla ∇ partial ∂
+    """,
+)
 # With a space on both sides, and without.
 _BETWEEN = {
     **{"in": "∈", "to": "→", "mapsto": "↦", "times": "×", "neq": "≠", "ne": "≠", "leq": "≤", "le": "≤"},
@@ -25,11 +26,11 @@ _ALONE = {
     **{"vdots": "⋮", "ddots": "⋱", "top": "⊤", "prime": "′", "star": "*", "langle": "⟨", "rangle": "⟩"},
     **{"lVert": "‖", "rVert": "‖", "|": "‖", "lvert": "|", "rvert": "|", "{": "{", "}": "}", "%": "%"},
     **{"quad": "   ", "qquad": "      ", ",": " ", ";": " ", ":": " ", " ": " ", "!": "", "\\": "; "},
-    **dict.fromkeys(
-        "left right big Big bigl bigr Bigl Bigr bigg biggl biggr displaystyle textstyle limits".split(), ""
-    ),
+    **{"left": "", "right": "", "big": "", "Big": "", "bigl": "", "bigr": "", "Bigl": "", "Bigr": ""},
+    **{"bigg": "", "biggl": "", "biggr": "", "displaystyle": "", "textstyle": "", "limits": ""},
 }
-_SIGNS = {**_LETTERS, **_ALONE, **{name: f" {sign} " for name, sign in _BETWEEN.items()}}
+_SIGNS = dict(zip(_GREEK[::2], _GREEK[1::2], strict=True)) | _ALONE
+_SIGNS |= {name: f" {sign} " for name, sign in _BETWEEN.items()}
 _DOUBLE = {"R": "ℝ", "C": "ℂ", "H": "ℍ", "N": "ℕ", "Z": "ℤ", "Q": "ℚ"}
 # Over a letter, as a combining sign.
 _OVER = {"hat": "\u0302", "bar": "\u0304", "tilde": "\u0303", "dot": "\u0307", "vec": "\u20d7"}

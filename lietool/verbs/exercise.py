@@ -1,4 +1,4 @@
-"""Write a formula of the book yourself and see what is right: exercises, marks, and whole classes of them."""
+"""Write formulas of the book yourself, and see what is right: exercises, marks, classes."""
 
 import importlib
 import json
@@ -27,7 +27,7 @@ class _Group(click.Group):
 
 @click.group(cls=_Group)
 def command() -> None:
-    """Write a formula of the book yourself and see what is right: exercises, marks, and whole classes of them.
+    """Write formulas of the book yourself, and see what is right: exercises, marks, classes.
 
     `lietool exercise start NAME` writes a file to fill in, `lietool exercise check` says what is right in it,
     what is not and why, and draws the picture of the book with your function.  With --project there are the
