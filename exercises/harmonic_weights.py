@@ -14,9 +14,9 @@ $A$ is the matrix of the Poisson equation (7.14), symmetric with $A_{ij} = -w_{i
 $A_{ii} = \sum_j w_{ij}$. Where values are given, they are moved to the right side: of the rows of vertices
 that are free, the columns of those that are held.
 
-Write two functions. In the picture the mesh has 6290 vertices: `scipy.sparse` and `scipy.sparse.linalg` may
-be imported; full matrices do too, but take seconds. A triangle without an area has no cotangents: `weights`
-raises a ValueError there.
+Write two functions. The meshes are small, and full matrices will do; `scipy.sparse` and
+`scipy.sparse.linalg` may be imported too. A triangle without an area has no cotangents: `weights` raises a
+ValueError there.
 """
 
 import numpy as np
@@ -181,10 +181,10 @@ def _bad(rng):
 def _shown(f):
     """The student's function as the figure calls that of the library."""
 
-    def harmonic(V, F, handles):
+    def weights(V, F, handles):
         return np.asarray(f.weights(V, F, _held(len(V), *handles)))
 
-    return {"harmonic": harmonic}
+    return {"weights": weights}
 
 
 def _reference(harmonic, V, F, handle):
@@ -257,7 +257,7 @@ EXERCISE = Exercise(
         Check("hard inputs: obtuse, tiny", 1, law=_hard),
         Check("bad input: no area", 1, cases=_bad),
     ),
-    picture=Picture("B7.7", 2, _shown),
+    picture=Picture("G7.14", 2, _shown),
     mutants=("harmonic.weights",),
     allowed=("scipy.sparse", "scipy.sparse.linalg"),
     mistakes=(

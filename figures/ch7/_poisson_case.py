@@ -1,14 +1,13 @@
 """A mesh with its pins and handles, the weights of these, and where it is when they are on their way."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lietool.deform import distortion, harmonic, poisson, ways
-from lietool.figure import Library
 from lietool.lie import polar, quaternion, so3, sym
 from lietool.mesh import geodesic
 from lietool.mesh.surface import Mesh
@@ -57,8 +56,8 @@ class Case:
     """A mesh, which of its vertices are pinned and which are handles, and what these do.
 
     `painted` are weights (n, k) in place of computed ones; `notes` what is to be said of the mesh; `close`
-    the vertices that are seen close by where results are compared, all if there are none.  `smooth` computes
-    harmonic weights, and `join` puts the faces together again.
+    the vertices that are seen close by where results are compared, all if there are none.  `join` puts
+    the faces together again.
     """
 
     name: str
@@ -72,13 +71,7 @@ class Case:
     notes: tuple[str, ...] = ()
     close: Index | None = None
     kept: dict[str, tuple[poisson.Prepared, Array]] = field(default_factory=dict)
-    smooth: Callable[[Array, Index, Sequence[Index]], Array] = harmonic.harmonic
     join: poisson.Join = poisson.join
-
-    def using(self, smooth: Callable[..., Array], join: poisson.Join) -> "Case":
-        """Return it with functions of the library or others; of what others compute nothing is kept."""
-        kept = self.kept if isinstance(smooth, Library) else {}
-        return replace(self, smooth=smooth, join=join, kept=kept)
 
     @cached_property
     def sets(self) -> list[Index]:
@@ -114,7 +107,7 @@ class Case:
         V, F = self.mesh.vertices, self.mesh.faces
         if kind == "geodesic":
             return self._by_distance()
-        make = harmonic.biharmonic if kind == "biharmonic" else self.smooth
+        make = harmonic.biharmonic if kind == "biharmonic" else harmonic.harmonic
         return harmonic.follow(V, F, self.sets, make)[:, : len(self.handles)]
 
     def _by_distance(self) -> Array:

@@ -119,7 +119,6 @@ def poisson(
         ),
     ] = None,
     *,
-    harmonic: Library = Library("lietool.deform.harmonic.harmonic"),
     join: Library = Library("lietool.deform.poisson.join"),
 ) -> Drawing:
     """A mesh whose pinned vertices stay while handles are dragged, by Poisson's equation.
@@ -151,7 +150,7 @@ def poisson(
 
     def looked(found: examples.Case) -> examples.Case:
         look = replace(found.look.turned(around, above), y_up=up == "y")
-        return replace(found, look=look).using(harmonic, join)
+        return replace(found, look=look, join=join)
 
     if example == "handles":
         return pages.handles(looked(given or examples.by_head()), weights, way, t)
