@@ -2,7 +2,6 @@
 
 import json
 import os
-import resource
 import subprocess
 import sys
 import tempfile
@@ -123,6 +122,10 @@ def write(folder: Path, names: Sequence[str], count: int, seed: int) -> dict[Pat
 
 def _timed(call: Sequence[str]) -> dict[str, Any]:
     """Run a check; return its seconds by the clock and on processors, and what it printed."""
+    try:
+        import resource
+    except ImportError:
+        raise _studio.Stop(2, "submissions are graded on Linux and macOS only") from None
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     done = subprocess.run(call, capture_output=True, text=True)
     wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -178,6 +178,7 @@ def several(found: Sequence[Row]) -> None:
     click.echo()
     for line in sentences(summary(found)):
         click.echo(line)
+    click.echo("`lietool exercise check` with one of the files says what is wrong in it.")
 
 
 def _most(counted: Counter[str]) -> list[tuple[str, int]]:
