@@ -83,7 +83,7 @@ def action(q, p):
     ndarray, shape (..., 3)
     """
     z, w = q[..., :4], q[..., 4:]
-    back = z * np.array([1.0, -1.0, -1.0, -1.0])
+    back = conjugate(z)
     # Multiplied out: z p z^-1 + w z^-1 - z w_bar, of which the last two are the same.
     return (times(times(z, imaginary(p)), back) + 2.0 * times(w, back))[..., 1:]
 
@@ -96,6 +96,11 @@ def times(q, p):
     return np.concatenate([real, a * w + b * v + np.cross(v, w)], axis=-1)
 
 
+def conjugate(q):
+    """Return quaternions with the signs of their imaginary parts changed."""
+    return q * np.array([1.0, -1.0, -1.0, -1.0])
+
+
 def imaginary(p):
     """Return vectors as quaternions, shape (..., 4)."""
     p = np.asarray(p, float)
@@ -103,6 +108,7 @@ def imaginary(p):
 
 
 _ONE, _I, _J, _K = np.eye(4)
+_QUARTER = np.sqrt(0.5) * (_ONE + _K)
 
 
 def _unit(rng, *shape):
@@ -151,21 +157,17 @@ def _batches(rng):
 
 
 def _laws(f, rng):
-    q, r, s = (_moving(rng) for _ in range(3))
-    p, b, z = rng.normal(size=3), rng.normal(size=3), _unit(rng)
+    (q, r, s), (p, b), z = _moving(rng, 3), rng.normal(size=(2, 3)), _unit(rng)
     yield Claim("(q r) s = q (r s)", f.product(f.product(q, r), s), f.product(q, f.product(r, s)), (q, r, s))
     moved = f.action(q, f.action(r, p))
     yield Claim("q r moves as first r does, then q", f.action(f.product(q, r), p), moved, (q, r, p))
     yield Claim("motion(z, t) takes the origin to t", f.action(f.motion(z, b), np.zeros(3)), b, (z, b))
     # A translation seen from a turned frame.
-    zero = np.zeros(3)
-    turn, shift = f.motion(z, zero), f.motion(_ONE, b)
-    there = f.product(f.product(turn, shift), f.motion(z * np.array([1.0, -1.0, -1.0, -1.0]), zero))
+    turn, back = (f.motion(x, np.zeros(3)) for x in (z, conjugate(z)))
+    there = f.product(f.product(turn, f.motion(_ONE, b)), back)
     yield Claim("R T_b R^-1 = T_Rb, (2.8)", there, f.motion(_ONE, f.action(turn, b)), (z, b))
 
 
-# A quarter of a turn about z.
-_QUARTER = np.sqrt(0.5) * (_ONE + _K)
 # Where the plate is held in space: two directions in its plane, the axis of its turns, and its origin beside
 # that of space, so that every turn of it is a turn and a translation.
 _ACROSS, _UP, _AXIS = np.array([[3.0, -6.0, 2.0], [6.0, 2.0, -3.0], [2.0, 3.0, 6.0]]) / 7.0
@@ -184,10 +186,6 @@ def _shown(f):
         return f.action(q, _AXIS + (p + _ASIDE) @ _PLANE) @ _PLANE.T - _ASIDE
 
     return {"number": number, "multiply": f.product, "act": act}
-
-
-def _bar(q):
-    return q * np.array([1.0, -1.0, -1.0, -1.0])
 
 
 def _made(dual):
@@ -234,15 +232,16 @@ _MISTAKES = (
         "even a unit dual quaternion, (4.16).",
         _made(lambda z, t: 0.5 * t + 0.0 * z),
     ),
-    Mistake(
-        "one term of two",
-        "A term of the product is missing: (z + w eps)(x + y eps) has the dual part z y + w x.",
-        _multiplied(lambda z, w, x, y: times(z, y)),
-    ),
-    Mistake(
-        "the other term of two",
-        "A term of the product is missing: (z + w eps)(x + y eps) has the dual part z y + w x.",
-        _multiplied(lambda z, w, x, y: times(w, x)),
+    *(
+        Mistake(
+            name,
+            "A term of the product is missing: (z + w eps)(x + y eps) has the dual part z y + w x.",
+            _multiplied(dual),
+        )
+        for name, dual in (
+            ("z y alone", lambda z, w, x, y: times(z, y)),
+            ("w x alone", lambda z, w, x, y: times(w, x)),
+        )
     ),
     Mistake(
         "order within the dual part",
@@ -275,26 +274,25 @@ _MISTAKES = (
         "star missing",
         "Translations do nothing here. On the right of the point stands the conjugate with a star, whose "
         "dual part has changed its sign: without that w z^-1 and z w_bar cancel.",
-        _moved(lambda z, w, p: times(times(z, p), _bar(z))),
+        _moved(lambda z, w, p: times(times(z, p), conjugate(z))),
     ),
     Mistake(
         "once",
         "The translation is half as long as it should be: both sides of the point add one, w z^-1 and "
         "-z w_bar, which are the same.",
-        _moved(lambda z, w, p: times(times(z, p), _bar(z)) + times(w, _bar(z))),
+        _moved(lambda z, w, p: times(times(z, p), conjugate(z)) + times(w, conjugate(z))),
     ),
     Mistake(
         "2 w",
         "The translation is 2 w z^-1. It is 2 w only where nothing turns, z = 1.",
-        _moved(lambda z, w, p: times(times(z, p), _bar(z)) + 2.0 * w),
+        _moved(lambda z, w, p: times(times(z, p), conjugate(z)) + 2.0 * w),
     ),
     Mistake(
         "the other way round",
         "This turns the other way: the point stands between z on its left and its conjugate on its right.",
-        _moved(lambda z, w, p: times(times(_bar(z), p), z) + 2.0 * times(w, _bar(z))),
+        _moved(lambda z, w, p: times(times(conjugate(z), p), z) + 2.0 * times(w, conjugate(z))),
     ),
 )
-
 
 EXERCISE = Exercise(
     number=5,
