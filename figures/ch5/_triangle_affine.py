@@ -27,10 +27,10 @@ def picture(given: maps.Map, t: float) -> scene.Picture:
 def _plane(given: maps.Map, t: float) -> list[scene.Record]:
     """The triangles where they lie, the origin, the source under A on its way, and the translation."""
     shift = given.affine[:2, 2]
-    turned = given.source @ given.A.T + t * shift
+    still = given.source @ given.A.T
+    turned, reached = still + t * shift, still + shift
     # The place does not change with t from 0 to 1.
-    still = given.target - shift
-    points = np.concatenate([given.source, still, turned, given.target, [[0.0, 0.0]]])
+    points = np.concatenate([given.source, still, turned, reached, given.target, [[0.0, 0.0]]])
     place = plane.fit(points, _BOX)
     shape = shapes.Shape.of(given)
     low, high = points.min(axis=0), points.max(axis=0)
@@ -40,7 +40,7 @@ def _plane(given: maps.Map, t: float) -> list[scene.Record]:
     ]
     for A, corners, colors in (
         (np.eye(2), given.source, shapes.stage(0.0, 1.0)),
-        (given.A, given.target, shapes.stage(1.0, 1.0)),
+        (given.A, reached, shapes.stage(1.0, 1.0)),
         (given.A, turned, (style.BETWEEN, style.BETWEEN_EDGE)),
     ):
         middle = place.at(corners.mean(axis=0))

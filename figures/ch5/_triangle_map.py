@@ -1,14 +1,17 @@
 """The map between the two triangles of `triangle-interp`, its factors, and the ways to it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from lietool.figure import Library
 from lietool.interp import triangle
 from lietool.lie import so2
 from lietool.render import style
 
+AFFINE_MAP = Library("lietool.interp.triangle.affine_map")
 METHODS = {
     "linear": triangle.linear,
     "arap": triangle.arap,
@@ -123,7 +126,12 @@ class Map:
         return np.unique(np.round(1.0 / (1.0 - values), 12))
 
 
-def read(source: tuple[float, ...], target: tuple[float, ...], turns: int) -> Map:
+def read(
+    source: tuple[float, ...],
+    target: tuple[float, ...],
+    turns: int,
+    affine_map: Callable[..., np.ndarray] = AFFINE_MAP,
+) -> Map:
     """Return the map between two triangles, each six numbers; the second may be the four of a matrix.
 
     Raises
@@ -149,7 +157,7 @@ def read(source: tuple[float, ...], target: tuple[float, ...], turns: int) -> Ma
             f"target must not be a mirror image, whose map has det A < 0; got det A = "
             f"{areas[1] / areas[0]:.3g}. Exchange two corners of one triangle"
         )
-    affine = triangle.affine_map(p, q)
+    affine = affine_map(p, q)
     angle = float(triangle.principal_angle(affine[:2, :2])) + 2.0 * np.pi * turns
     return Map(p, q, affine, angle)
 

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 
 from . import _triangle_affine as affine
 from . import _triangle_compare as comparison
@@ -161,6 +161,8 @@ def triangle_interp(
         ),
     ] = 0.0,
     t: Annotated[float, Param("the moment that is marked", low=-1.5, high=2.5)] = 0.5,
+    *,
+    affine_map: Library = maps.AFFINE_MAP,
 ) -> Drawing:
     """Between two triangles: four homotopies of the map that carries one to the other.
 
@@ -171,7 +173,7 @@ def triangle_interp(
     image of the other, is refused: no way of regular maps leads to it.
     """
     turning = compare != "none" or method not in ("linear", "matrix-log")
-    given = maps.read(source, target, turns if turning else 0)
+    given = maps.read(source, target, turns if turning else 0, affine_map)
     times = np.arange(steps + 1) / steps
     if compare == "linear,exponential":
         if turns:

@@ -12,17 +12,32 @@ NOTHING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """The parameters x, l = shift, Y = Q diag(logs) Q^T, their image A, and what psi says of it."""
+    """The parameters x, l = shift, Y = Q diag(logs) Q^T, all in `given`, their image A, and psi of it."""
 
     map: str
     x: np.ndarray
     shift: np.ndarray
     Q: np.ndarray
     logs: np.ndarray
+    given: np.ndarray
     A: np.ndarray
-    back_x: np.ndarray
-    back_shift: np.ndarray
+    back: np.ndarray
     same: bool
+
+    @property
+    def back_x(self) -> np.ndarray:
+        """The rotation vector that psi answers."""
+        return self.back[:3]
+
+    @property
+    def back_shift(self) -> np.ndarray:
+        """The translation part that psi answers."""
+        return self.back[3:6]
+
+    @property
+    def Y(self) -> np.ndarray:
+        """The logarithm of the stretch."""
+        return (self.Q * self.logs) @ self.Q.T
 
     @property
     def symbol(self) -> str:

@@ -1,11 +1,13 @@
 """Figure 7.1 of the book."""
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 import numpy as np
 
 from lietool.figure import Drawing, Param, Plate, Time, figure
 from lietool.lie import affine, so3, sym
+from lietool.render.scene import Picture
 
 from . import _parametrise_page as page
 from ._parametrise_shown import Shown, unit
@@ -76,26 +78,37 @@ def parametrise(
     another one, inside of the ball.
     """
     u = unit("axis", axis)
-    x, shift, factors = np.radians(angle) * u, np.array(translation), np.array(stretch)
+    factors = np.array(stretch)
     Q = so3.rotation("x", np.radians(tilt))
-    Y = (Q * np.log(factors)) @ Q.T
-    given = np.concatenate([x, shift, Y[_UPPER]])
-    A = _PHI[map](given)
-    back = _PSI[map](A)
-    error = float(np.abs(_PHI[map](back) - A).max())
+
+    def at(degrees: float) -> Shown:
+        return _shown(map, np.radians(degrees) * u, np.array(translation), Q, np.log(factors))
+
+    def film(angles: Sequence[float]) -> list[Picture]:
+        return page.pictures([at(degrees) for degrees in angles])
+
+    shown = at(angle)
+    numbers = {
+        "parameters": shown.given,
+        "A": shown.A,
+        "R": shown.R,
+        "S": sym.exp(shown.Y),
+        "d": shown.d,
+        "log_stretch": shown.logs,
+        "principal": shown.back,
+        "same": shown.same,
+        "round_trip_below": _EXACT,
+    }
+    return Drawing(page.pictures([shown])[0], numbers, film=film)
+
+
+def _shown(name: str, x: np.ndarray, shift: np.ndarray, Q: np.ndarray, logs: np.ndarray) -> Shown:
+    """What a map makes of parameters, and what psi says of that."""
+    given = np.concatenate([x, shift, ((Q * logs) @ Q.T)[_UPPER]])
+    A = _PHI[name](given)
+    back = _PSI[name](A)
+    error = float(np.abs(_PHI[name](back) - A).max())
     if error > _EXACT:
         raise ArithmeticError(f"parametrise: phi(psi(A)) differs from A by {error:g}")
     same = bool(np.abs(back - given).max() < _SAME * max(1.0, float(np.abs(given).max())))
-    shown = Shown(map, x, shift, Q, np.log(factors), A, back[:3], back[3:6], same)
-    numbers = {
-        "parameters": given,
-        "A": A,
-        "R": so3.exp(x),
-        "S": sym.exp(Y),
-        "d": A[:3, 3],
-        "log_stretch": np.log(factors),
-        "principal": back,
-        "same": same,
-        "round_trip_below": _EXACT,
-    }
-    return Drawing(page.picture(shown), numbers)
+    return Shown(name, x, shift, Q, logs, given, A, back, same)

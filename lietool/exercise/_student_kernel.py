@@ -39,8 +39,8 @@ def limit(settings: dict[str, Any]) -> None:
     Parameters
     ----------
     settings : dict
-        With "memory" in bytes beyond what is used now, "processes", "files", "written" in bytes and "cpu" in
-        seconds: as `lietool.exercise.student.Limits`.
+        With "memory" in bytes beyond what is used now, "files" and "written" in bytes, as
+        `lietool.exercise.student.Limits`.
     """
     import resource
 
@@ -48,7 +48,7 @@ def limit(settings: dict[str, Any]) -> None:
         "RLIMIT_CORE": 0,
         "RLIMIT_FSIZE": settings["written"],
         "RLIMIT_NOFILE": settings["files"],
-        "RLIMIT_NPROC": settings["processes"],
+        "RLIMIT_NPROC": 0,
         "RLIMIT_AS": _used() + settings["memory"],
     }
     for name, most in wanted.items():
@@ -82,7 +82,6 @@ def walls(settings: dict[str, Any]) -> list[str]:
     list of str
         Those that stand: "files", "calls".
     """
-    limit(settings)
     if _C is None or sys.platform != "linux":
         return []
     _C.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
@@ -115,8 +114,8 @@ def _wall_files(readable: Iterable[str], folder: str) -> bool:
     if version < 1:
         return False
     known = (1 << _KNOWN.get(version, 16)) - 1
-    # From the fourth on also the network, to bind and to connect.
-    attributes = struct.pack("QQ", known, 3 if version >= 4 else 0)[: 16 if version >= 4 else 8]
+    # From the fourth on also the network, to bind and to connect; from the sixth on signals to others.
+    attributes = struct.pack("QQQ", known, 3, 3)[: 24 if version >= 6 else 16 if version >= 4 else 8]
     rules = _C.syscall(_CREATE_RULESET, attributes, len(attributes), 0)
     if rules < 0:
         return False

@@ -103,6 +103,16 @@ class TestPicture:
         assert r"\mathbf{x}'" in page(angle=250.0) and r"\mathbf{l}'" in page(angle=250.0)
         assert r"\mathbf{l}'" not in page(angle=250.0, map="phi_so")
 
+    @pytest.mark.parametrize("kind", ["phi_se", "phi_so"])
+    def test_a_film_is_seen_in_one_way(self, kind):
+        angles = [0.0, 80.0, 185.0, 350.0]
+        pictures = drawn(map=kind).film(angles)
+        first = [view.camera for view in pictures[0].views]
+        for picture, angle in zip(pictures, angles, strict=True):
+            assert [view.camera for view in picture.views] == first
+            still = drawn(map=kind, angle=angle).picture
+            assert [len(v.records) for v in picture.views] == [len(v.records) for v in still.views]
+
     def test_no_axis_is_refused_by_name(self):
         with pytest.raises(ValueError, match="axis must be different from 0"):
             drawn(axis=(0.0, 0.0, 0.0))
