@@ -93,7 +93,7 @@ def _apart(got, want):
     angle = np.linalg.norm(want, axis=-1)
     off = np.linalg.norm(got - want, axis=-1)
     either = np.fmin(off, np.linalg.norm(got + want, axis=-1))
-    off = np.where(angle > np.pi - 1e-12, either, off)
+    off = np.where(np.abs(angle - np.pi) < 1e-12, either, off)
     # Two that are nan in the same places are the same wrong result.
     blank = np.isnan(got).all(axis=-1) & np.isnan(want).all(axis=-1)
     return float(np.max(np.where(blank, 0.0, off / np.maximum(angle, 1e-8))))
