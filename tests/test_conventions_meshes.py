@@ -182,6 +182,7 @@ OF: dict[str, dict[str, Any]] = {
         "weights": W[:, 1:],
         "A": A[:1],
     },
+    "poisson.join": {"guide": MAPS, "values": V[np.concatenate(ENDS)]},
     "population": {"targets": 3},
     "pose.hermite": {"velocities": np.zeros((6, 12))},
     "pose_keys": {"times": None, "centre": np.zeros(3), "rest": MANY, "frames": MANY, "near": None},

@@ -1,7 +1,7 @@
 """The map between the two triangles of `triangle-interp`, its factors, and the ways to it."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -12,10 +12,12 @@ from lietool.lie import so2
 from lietool.render import style
 
 AFFINE_MAP = Library("lietool.interp.triangle.affine_map")
-METHODS = {
+ARAP = Library("lietool.interp.triangle.arap")
+LOGEXP = Library("lietool.interp.triangle.logexp")
+METHODS: Mapping[str, triangle.Homotopy] = {
     "linear": triangle.linear,
-    "arap": triangle.arap,
-    "logexp": triangle.logexp,
+    "arap": ARAP,
+    "logexp": LOGEXP,
     "matrix-log": triangle.matrix_log,
 }
 NAMES = {
@@ -50,12 +52,15 @@ class Map:
         The map between them.
     angle : float
         Of R, radians, with its full turns.
+    ways : mapping from str to callable
+        The homotopies by the names of the methods.
     """
 
     source: np.ndarray
     target: np.ndarray
     affine: np.ndarray
     angle: float
+    ways: Mapping[str, triangle.Homotopy] = field(default_factory=lambda: METHODS)
 
     @property
     def A(self) -> np.ndarray:
@@ -77,7 +82,7 @@ class Map:
         """The map by S alone."""
         affine = np.eye(3)
         affine[:2, :2] = self.S
-        return Map(self.source, self.about_middle @ self.S.T, affine, 0.0)
+        return Map(self.source, self.about_middle @ self.S.T, affine, 0.0, self.ways)
 
     @cached_property
     def about_middle(self) -> np.ndarray:
@@ -95,7 +100,7 @@ class Map:
 
     def at(self, method: str, t: np.ndarray | float) -> np.ndarray:
         """Return A(t) by a method; shape (*t, 2, 2)."""
-        return METHODS[method](self.A, t, self.angle)
+        return self.ways[method](self.A, t, self.angle)
 
     def angles(self, method: str, t: np.ndarray) -> np.ndarray:
         """Return the angles of rotation of A(t), without jumps from the 0 of t = 0; radians."""
@@ -131,6 +136,7 @@ def read(
     target: tuple[float, ...],
     turns: int,
     affine_map: Callable[..., np.ndarray] = AFFINE_MAP,
+    ways: Mapping[str, triangle.Homotopy] = METHODS,
 ) -> Map:
     """Return the map between two triangles, each six numbers; the second may be the four of a matrix.
 
@@ -159,7 +165,7 @@ def read(
         )
     affine = affine_map(p, q)
     angle = float(triangle.principal_angle(affine[:2, :2])) + 2.0 * np.pi * turns
-    return Map(p, q, affine, angle)
+    return Map(p, q, affine, angle, ways)
 
 
 def numbers(given: Map, methods: tuple[str, ...], times: np.ndarray, t: float) -> dict[str, object]:

@@ -163,6 +163,8 @@ def triangle_interp(
     t: Annotated[float, Param("the moment that is marked", low=-1.5, high=2.5)] = 0.5,
     *,
     affine_map: Library = maps.AFFINE_MAP,
+    arap: Library = maps.ARAP,
+    logexp: Library = maps.LOGEXP,
 ) -> Drawing:
     """Between two triangles: four homotopies of the map that carries one to the other.
 
@@ -173,7 +175,8 @@ def triangle_interp(
     image of the other, is refused: no way of regular maps leads to it.
     """
     turning = compare != "none" or method not in ("linear", "matrix-log")
-    given = maps.read(source, target, turns if turning else 0, affine_map)
+    ways = dict(maps.METHODS) | {"arap": arap, "logexp": logexp}
+    given = maps.read(source, target, turns if turning else 0, affine_map, ways)
     times = np.arange(steps + 1) / steps
     if compare == "linear,exponential":
         if turns:

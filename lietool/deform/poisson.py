@@ -234,7 +234,7 @@ def join(prepared: Prepared, guide: Array, values: Array) -> Array:
     prepared : Prepared
     guide : ndarray, shape (m, 3, 3)
         The linear map G of each face: the gradient of coordinate a is to be the sum over b of G_ab grad x_b.
-    values : ndarray, shape (len(prepared.factor.fixed), 3)
+    values : ndarray, shape (k, 3)
         Where the vertices of pins and handles are, in the order of `prepared.factor.fixed`.
 
     Returns
@@ -246,7 +246,14 @@ def join(prepared: Prepared, guide: Array, values: Array) -> Array:
     ValueError
         If a shape does not fit or a number is not finite.
     """
-    return prepared.factor.solve(_right(prepared, guide), values)
+    where, held = "poisson.join", len(prepared.factor.fixed)
+    maps = checks.array(where, "guide", guide, (3, 3))
+    if maps.shape != (len(prepared.faces), 3, 3):
+        checks.fail(where, "guide", f"shape ({len(prepared.faces)}, 3, 3)", f"shape {maps.shape}", None)
+    places = checks.array(where, "values", values, (3,))
+    if places.shape != (held, 3):
+        checks.fail(where, "values", f"shape ({held}, 3)", f"shape {places.shape}", None)
+    return prepared.factor.solve(_right(prepared, maps), places)
 
 
 def _parameters(where: str, way: ways.Way, moves: Array, turns: ArrayLike | None) -> tuple[Array, Mask]:

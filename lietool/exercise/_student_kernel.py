@@ -206,6 +206,7 @@ _CALLS = {
     "getrandom": (318, 278),
     "statx": (332, 291),
     "rseq": (334, 293),
+    "close_range": (436, 436),
     "faccessat2": (439, 439),
 }
 # By machine: its column above, its name for the filter, and its tgkill.

@@ -66,7 +66,7 @@ def rows(marked: Sequence[Marked], exercises: Mapping[str, Exercise], picture: b
         if each.record is not None:
             about = each.record.about
             checks = {check["title"]: check["points"] for check in about["checks"]}
-            said = " ".join(about["diagnosis"]) or trouble(about)
+            said = " ".join(about["diagnosis"]) or _first_trouble(about)
             made.append(Row(mine.file, mine.exercise, about["marks"], about["of"], checks, said, mine.digest))
             continue
         name = mine.exercise or only
@@ -178,11 +178,18 @@ def several(found: Sequence[Row]) -> None:
     click.echo()
     for line in sentences(summary(found)):
         click.echo(line)
+    click.echo("`lietool exercise check` with one of the files says what is wrong in it.")
 
 
 def _most(counted: Counter[str]) -> list[tuple[str, int]]:
     # Of equally many the first by name: the order of the files must not matter.
     return sorted(counted.items(), key=lambda x: (-x[1], x[0]))[:_FIRST]
+
+
+def _first_trouble(about: Mapping[str, Any]) -> str:
+    """What kept the first input of all that fail from giving a value; empty if it gave one."""
+    failed = (x for check in about["checks"] for x in check["findings"] if not x["passed"])
+    return about["trouble"] or next(failed, {"trouble": ""})["trouble"]
 
 
 def _word(check: Mapping[str, Any]) -> str:

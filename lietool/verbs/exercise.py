@@ -13,16 +13,26 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 _FOLDER = click.Path(file_okay=False, path_type=Path)
 
 
+# Commands with much to import, and what help says of them without that.
+_LATER = {"export": "Write an assignment for another grader."}
+
+
 class _Group(click.Group):
-    """Its commands, and one that is imported when it is used."""
+    """Its commands, and those that are imported when they are used."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return [*super().list_commands(ctx), "export"]
+        return [*super().list_commands(ctx), *_LATER]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name == "export":
-            return importlib.import_module("lietool.verbs._exercise_export").command
+        if cmd_name in _LATER:
+            return importlib.import_module(f"lietool.verbs._exercise_{cmd_name}").command
         return super().get_command(ctx, cmd_name)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        limit = formatter.width - 6 - max(map(len, self.list_commands(ctx)))
+        rows = [(name, mine.get_short_help_str(limit)) for name, mine in self.commands.items()]
+        with formatter.section("Commands"):
+            formatter.write_dl([*rows, *_LATER.items()])
 
 
 @click.group(cls=_Group)

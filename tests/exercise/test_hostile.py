@@ -20,7 +20,7 @@ from lietool import paths
 from lietool.exercise import _student_process
 from lietool.exercise.student import Limits, Student, Trouble
 
-_LIMITS = Limits(cpu=0.4, memory=256 << 20, written=1 << 20)
+_LIMITS = Limits(cpu=0.4, memory=128 << 20, written=1 << 20)
 _REFERENCE = paths.PACKAGE / "lie" / "so3.py"
 _GOLDEN = next(iter(sorted((paths.PACKAGE.parent / "golden").rglob("*.png"))), Path("golden/B2.5.png"))
 _HONEST = """
@@ -135,8 +135,8 @@ _PROCESSES = [
     _f("import subprocess", "import subprocess", "refused", "subprocess is refused: .*numpy alone"),
     _f("import os", "import os", "refused", "os is refused: .*numpy alone"),
     _f(
-        "subprocess through numpy",
-        "import numpy.testing, sys\nsys.modules['subprocess'].run(['touch', 'evil'])",
+        "subprocess behind",
+        "import sys\nsys.modules['importlib'].import_module('subprocess').run(['touch', 'evil'])",
         "refused",
         "starting a process",
     ),
