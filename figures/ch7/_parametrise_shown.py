@@ -1,10 +1,9 @@
 """What figure 7.1 shows: parameters, their image, and what psi says of it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-
-from lietool.lie import se3, so3
 
 NOTHING = 1e-9
 """Shorter vectors are none."""
@@ -12,7 +11,10 @@ NOTHING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """The parameters x, l = shift, Y = Q diag(logs) Q^T, all in `given`, their image A, and psi of it."""
+    """The parameters x, l = shift, Y = Q diag(logs) Q^T, all in `given`, their image A, and psi of it.
+
+    `rigid` is what A does after the stretch; with phi_se `exp`, the exponential map of se(3), says it.
+    """
 
     map: str
     x: np.ndarray
@@ -21,6 +23,8 @@ class Shown:
     logs: np.ndarray
     given: np.ndarray
     A: np.ndarray
+    rigid: np.ndarray
+    exp: Callable[[np.ndarray], np.ndarray]
     back: np.ndarray
     same: bool
 
@@ -52,19 +56,19 @@ class Shown:
     @property
     def R(self) -> np.ndarray:
         """The rotation of A."""
-        return so3.exp(self.x)
+        return self.rigid[:3, :3]
 
     @property
     def d(self) -> np.ndarray:
         """The translation of A."""
-        return self.A[:3, 3]
+        return self.rigid[:3, 3]
 
     def way(self, n: int = 121) -> np.ndarray:
         """The way (n, 3) of the origin to d: of the screw motion, or straight."""
         t = np.linspace(0.0, 1.0, n)[:, None]
         if self.map == "phi_so":
             return t * self.shift
-        return se3.exp(t * np.concatenate([self.x, self.shift]))[:, :3, 3]
+        return self.exp(t * np.concatenate([self.x, self.shift]))[:, :3, 3]
 
 
 def unit(name: str, v: tuple[float, float, float]) -> np.ndarray:

@@ -1,11 +1,11 @@
 """Figure 7.1 of the book."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, Literal
 
 import numpy as np
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 from lietool.lie import affine, so3, sym
 from lietool.render.scene import Picture
 
@@ -13,6 +13,7 @@ from . import _parametrise_page as page
 from ._parametrise_shown import Shown, unit
 
 Vector = tuple[float, float, float]
+Map = Callable[[np.ndarray], np.ndarray]
 
 # An angle, radians, or a translation that differs by less is the same; how far off psi may be at most.
 _SAME, _EXACT = 1e-9, 1e-12
@@ -68,6 +69,9 @@ def parametrise(
     ),
     tilt: Annotated[float, Param("turn of these axes about the x axis", "deg", -180.0, 180.0)] = -20.0,
     map: Annotated[Literal["phi_se", "phi_so"], Param("of the book, or of Kaji and Ochiai")] = "phi_se",
+    *,
+    exp: Library = Library("lietool.lie.se3.exp"),
+    log: Library = Library("lietool.lie.se3.log"),
 ) -> Drawing:
     """Parametrise: an affine transformation as rotation vector, translation and log-stretch, and back.
 
@@ -82,7 +86,7 @@ def parametrise(
     Q = so3.rotation("x", np.radians(tilt))
 
     def at(degrees: float) -> Shown:
-        return _shown(map, np.radians(degrees) * u, np.array(translation), Q, np.log(factors))
+        return _shown(map, np.radians(degrees) * u, np.array(translation), Q, np.log(factors), exp, log)
 
     def film(angles: Sequence[float]) -> list[Picture]:
         return page.pictures([at(degrees) for degrees in angles])
@@ -102,13 +106,21 @@ def parametrise(
     return Drawing(page.pictures([shown])[0], numbers, film=film)
 
 
-def _shown(name: str, x: np.ndarray, shift: np.ndarray, Q: np.ndarray, logs: np.ndarray) -> Shown:
-    """What a map makes of parameters, and what psi says of that."""
+def _shown(
+    name: str, x: np.ndarray, shift: np.ndarray, Q: np.ndarray, logs: np.ndarray, exp: Map, log: Map
+) -> Shown:
+    """What a map makes of parameters, and what psi says of that; of se(3) and SE(3) by `exp` and `log`."""
     given = np.concatenate([x, shift, ((Q * logs) @ Q.T)[_UPPER]])
     A = _PHI[name](given)
     back = _PSI[name](A)
     error = float(np.abs(_PHI[name](back) - A).max())
     if error > _EXACT:
         raise ArithmeticError(f"parametrise: phi(psi(A)) differs from A by {error:g}")
+    if name == "phi_se":
+        rigid = exp(given[:6])
+        back[:6] = log(rigid)
+    else:
+        rigid = np.eye(4)
+        rigid[:3, :3], rigid[:3, 3] = so3.exp(x), shift
     same = bool(np.abs(back - given).max() < _SAME * max(1.0, float(np.abs(given).max())))
-    return Shown(name, x, shift, Q, logs, given, A, back, same)
+    return Shown(name, x, shift, Q, logs, given, A, rigid, exp, back, same)

@@ -5,6 +5,7 @@ import pytest
 from scipy.linalg import expm, polar
 
 from lietool import figure, paths
+from lietool.lie import se3
 from lietool.render.scene import Label
 
 
@@ -34,6 +35,19 @@ class TestNumbers:
         stretched[:3, :3] = S
         assert shown["A"] == pytest.approx(expm(X) @ stretched, abs=1e-12)
         assert shown["d"] == pytest.approx(expm(X)[:3, 3], abs=1e-12)
+
+    def test_it_shows_the_maps_of_se3_that_it_is_given(self):
+        def straight(x):
+            T = se3.exp(x)
+            T[..., :3, 3] = x[..., 3:]
+            return T
+
+        parametrise = figure.load("parametrise", (paths.FIGURES,))
+        shown = parametrise.draw_with({"exp": straight, "log": lambda T: 0.5 * se3.log(T)}).numbers
+        right = parametrise.draw().numbers
+        assert shown["d"] == pytest.approx(shown["parameters"][3:6])
+        assert shown["principal"][:3] == pytest.approx(0.5 * right["principal"][:3])
+        assert not shown["same"] and right["same"]
 
     def test_the_other_map_adds_the_translation_last(self, plate):
         shown = plate("B7.1c").numbers
