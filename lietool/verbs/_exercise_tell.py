@@ -218,11 +218,13 @@ def _wrapped(called: str, text: str, indent: int = 4) -> list[str]:
     """Lines of a value, each row of a matrix in one of its own."""
     head, rest = f"{'':{indent}}{called:<8}", " " * (indent + 8)
     lines = []
+    # The rows stand below each other.
+    under = " " * (text.find("[[") + 1)
     for row in text.replace("], [", "],\n[").split("\n"):
         lines += textwrap.wrap(
             row,
             _WIDTH,
-            initial_indent=rest if lines else head,
+            initial_indent=rest + under if lines else head,
             # Within brackets that are still open.
             subsequent_indent=f"{rest}  ",
             break_long_words=False,
