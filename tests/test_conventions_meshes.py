@@ -181,6 +181,8 @@ OF: dict[str, dict[str, Any]] = {
         "handles": [ENDS[1]],
         "weights": W[:, 1:],
         "A": A[:1],
+        "guide": MAPS,
+        "values": V[[0, 1, 40]],
     },
     "population": {"targets": 3},
     "pose.hermite": {"velocities": np.zeros((6, 12))},

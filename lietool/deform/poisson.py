@@ -224,7 +224,7 @@ def solve(
     return Result(prepared, found, guide, fallback)
 
 
-def join(prepared: Prepared, guide: Array, values: Array) -> Array:
+def join(prepared: Prepared, guide: ArrayLike, values: ArrayLike) -> Array:
     """Return the vertices whose coordinates have the gradients that are nearest to those asked for.
 
     Book: (7.12), (7.14)
@@ -232,10 +232,10 @@ def join(prepared: Prepared, guide: Array, values: Array) -> Array:
     Parameters
     ----------
     prepared : Prepared
-    guide : ndarray, shape (m, 3, 3)
+    guide : array_like, shape (m, 3, 3)
         The linear map G of each face: the gradient of coordinate a is to be the sum over b of G_ab grad x_b.
-    values : ndarray, shape (len(prepared.factor.fixed), 3)
-        Where the vertices of pins and handles are, in the order of `prepared.factor.fixed`.
+    values : array_like, shape (b, 3)
+        Where the b vertices of pins and handles are, in the order of `prepared.factor.fixed`.
 
     Returns
     -------
@@ -246,7 +246,14 @@ def join(prepared: Prepared, guide: Array, values: Array) -> Array:
     ValueError
         If a shape does not fit or a number is not finite.
     """
-    return prepared.factor.solve(_right(prepared, guide), values)
+    arrays = []
+    wanted = (len(prepared.faces), 3, 3), (len(prepared.factor.fixed), 3)
+    for name, array, shape in zip(("guide", "values"), (guide, values), wanted, strict=True):
+        a = checks.array("poisson.join", name, array, shape[1:])
+        if a.shape != shape:
+            checks.fail("poisson.join", name, f"an array of shape {shape}", f"shape {a.shape}", None)
+        arrays.append(a)
+    return prepared.factor.solve(_right(prepared, arrays[0]), arrays[1])
 
 
 def _parameters(where: str, way: ways.Way, moves: Array, turns: ArrayLike | None) -> tuple[Array, Mask]:
