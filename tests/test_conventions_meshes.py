@@ -181,6 +181,8 @@ OF: dict[str, dict[str, Any]] = {
         "handles": [ENDS[1]],
         "weights": W[:, 1:],
         "A": A[:1],
+        "guide": MAPS,
+        "values": V[[0, 1, 40]],
     },
     "poisson.join": {"guide": MAPS, "values": V[np.concatenate(ENDS)]},
     "population": {"targets": 3},

@@ -224,7 +224,7 @@ def solve(
     return Result(prepared, found, guide, fallback)
 
 
-def join(prepared: Prepared, guide: Array, values: Array) -> Array:
+def join(prepared: Prepared, guide: ArrayLike, values: ArrayLike) -> Array:
     """Return the vertices whose coordinates have the gradients that are nearest to those asked for.
 
     Book: (7.12), (7.14)
@@ -232,7 +232,7 @@ def join(prepared: Prepared, guide: Array, values: Array) -> Array:
     Parameters
     ----------
     prepared : Prepared
-    guide : ndarray, shape (m, 3, 3)
+    guide : array_like, shape (m, 3, 3)
         The linear map G of each face: the gradient of coordinate a is to be the sum over b of G_ab grad x_b.
     values : ndarray, shape (k, 3)
         Where the vertices of pins and handles are, in the order of `prepared.factor.fixed`.
