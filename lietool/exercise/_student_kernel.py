@@ -50,6 +50,8 @@ def limit(settings: dict[str, Any]) -> None:
         "RLIMIT_NOFILE": settings["files"],
         "RLIMIT_NPROC": 0,
         "RLIMIT_AS": _used() + settings["memory"],
+        # Seconds in all: the grader has ended it long before, if it was not killed itself.
+        "RLIMIT_CPU": 3600,
     }
     for name, most in wanted.items():
         # One that a system does not have, or does not let us set, is left out.
@@ -85,12 +87,8 @@ def walls(settings: dict[str, Any]) -> list[str]:
     if _C is None or sys.platform != "linux":
         return []
     _C.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
-    readable = [*settings["packages"], *_of_library(settings["library"])]
-    return [
-        name
-        for name, stands in (("files", _wall_files(readable, settings["folder"])), ("calls", _wall_calls()))
-        if stands
-    ]
+    files, calls = _wall_files(settings), _wall_calls()
+    return [name for name, stands in (("files", files), ("calls", calls)) if stands]
 
 
 def _of_library(folders: Sequence[str]) -> Iterable[str]:
@@ -109,7 +107,7 @@ _CREATE_RULESET, _ADD_RULE, _RESTRICT = 444, 445, 446
 _KNOWN = {1: 13, 2: 14, 3: 15, 4: 15}
 
 
-def _wall_files(readable: Iterable[str], folder: str) -> bool:
+def _wall_files(settings: dict[str, Any]) -> bool:
     version = _C.syscall(_CREATE_RULESET, None, 0, 1)
     if version < 1:
         return False
@@ -120,9 +118,12 @@ def _wall_files(readable: Iterable[str], folder: str) -> bool:
     if rules < 0:
         return False
     try:
-        for path in readable:
+        for path in (*settings["packages"], *_of_library(settings["library"])):
             _allow(rules, path, _READ | _LIST)
-        _allow(rules, folder, (_READ | _WRITE | _LIST | _MAKE | _TRUNCATE) & known)
+        for path in settings["library"]:
+            # To find a module in.
+            _allow(rules, path, _LIST)
+        _allow(rules, settings["folder"], (_READ | _WRITE | _LIST | _MAKE | _TRUNCATE) & known)
         return _C.syscall(_RESTRICT, rules, 0) == 0
     finally:
         os.close(rules)

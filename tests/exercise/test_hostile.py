@@ -302,6 +302,17 @@ _FORGES = [
     _f("a trace", "import sys\nsys.settrace(lambda *_: None)", "refused", "interpreter"),
     # Python says nothing of it, but does not add it either.
     _f("another hook", "import sys\nsys.addaudithook(exit)\nreturn 0.0", ""),
+    _f(
+        "the frame of the refusal",
+        "try:\n    open('/etc/passwd')\nexcept PermissionError as error: step = error.__traceback__\n"
+        "while step.tb_next: step = step.tb_next\nframe = step.tb_frame\n"
+        "for name in ('_EVENTS', '_NEVER', '_SAYS', '_hook', 'RefusedError'): frame.f_globals[name] = ()\n"
+        "try: frame.f_locals.update(events=(), packages=('/',), library=('/',), folder='/')\n"
+        "except Exception: pass\n"
+        "open('/etc/passwd')",
+        "refused",
+        "reading '/etc/passwd'",
+    ),
     _f("code of its own", "return eval(f.__code__.replace(co_consts=()))", "refused", "interpreter"),
 ]
 _ANSWERS = [
