@@ -60,7 +60,10 @@ RULES = {
     "mutation": _rule("mutation lietool render golden " + _BELOW, "numpy"),
     # It grades what others have written, by the library, the catalogue of mistakes and the pictures.
     "exercise": _rule(
-        "exercise figure function mutation golden render lietool " + _BELOW, "numpy", ours_lazily="exercises"
+        "exercise figure function mutation golden render lietool " + _BELOW,
+        "numpy",
+        "nbformat IPython",
+        ours_lazily="exercises",
     ),
     "exercises": _rule("paths"),
     "verbs": _rule(_ALL, "click", "numpy PIL rich moderngl"),
@@ -81,6 +84,8 @@ EXCEPTIONS = {
         "matplotlib": {"peers"},
     },
     "golden": {"pytest": {"plugin"}, "matplotlib": {"pixels"}},
+    # Each where its notebooks are written, or run.
+    "exercise": {"nbformat": {"export_nbgrader"}, "IPython": {"notebook"}},
 }
 
 

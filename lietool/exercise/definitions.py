@@ -1,4 +1,4 @@
-"""What a function needs of the cells of a notebook: a file as it would be without the plots and the prints."""
+"""What a function needs of the cells of a notebook: a file as it would be without plots and prints."""
 
 import ast
 from collections.abc import Iterator, Sequence
@@ -74,7 +74,8 @@ def _statements(cell: str) -> Iterator[_Statement]:
             text = "\n".join(lines[decorators[0].lineno - 1 : node.end_lineno])
         names = frozenset(_bound(node))
         changed = frozenset(_changed(node))
-        used = frozenset(x.id for x in ast.walk(node) if isinstance(x, ast.Name))
+        read = (x for x in ast.walk(node) if isinstance(x, ast.Name) and isinstance(x.ctx, ast.Load))
+        used = frozenset(x.id for x in read)
         # What a loop or an if sets may have been set before it, and stay so.
         binds, changes = (
             (names - changed, changed) if isinstance(node, _SIMPLE) else (frozenset(), names | changed)

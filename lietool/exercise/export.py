@@ -74,7 +74,7 @@ def gather(names: Sequence[str], seed: int = 0) -> Assignment:
 
 
 def _own(files: Sequence[Path]) -> dict[str, bytes]:
-    """What of the project has to travel: its exercises with what they share, its figures and their goldens."""
+    """What of the project has to travel: exercises with what they share, figures and their goldens."""
     project = figures.project()
     mine = [file for file in files if file.parent != paths.EXERCISES]
     if project is None or not mine:
@@ -116,9 +116,7 @@ def plate_file(exercise: Exercise) -> str:
 
 def plate(exercise: Exercise) -> bytes:
     """Return the plate of an exercise as it should be, as PNG; raises ExerciseError."""
-    from lietool.golden import explain
-
-    return explain.png(picture.golden(exercise.picture.plate).image)
+    return picture.file(exercise.picture.plate).read_bytes()
 
 
 def file_name(exercise: Exercise) -> str:

@@ -1,6 +1,6 @@
-"""A course for nbgrader: a source notebook for each exercise, in the layout and with the metadata of nbgrader.
+"""A course for nbgrader: a source notebook for each exercise, in its layout and with its metadata.
 
-Source: nbgrader, cell metadata of schema version 3, and its course directory ``source/ASSIGNMENT/NAME.ipynb``.
+Source: nbgrader, cell metadata of schema version 3, and course directory ``source/ASSIGNMENT/NAME.ipynb``.
 """
 
 import ast
@@ -51,7 +51,7 @@ def files(assignment: Assignment, wheel: tuple[str, bytes]) -> dict[str, bytes]:
             first=assignment.exercises[0].name,
             note=note,
         ),
-        "nbgrader_config.py": export.template("nbgrader_config.py"),
+        "nbgrader_config.py": export.template("nbgrader_config"),
         wheel[0]: wheel[1],
     }
     for exercise in assignment.exercises:
@@ -110,9 +110,9 @@ def notebook(exercise: Exercise, seed: int = 0) -> Any:
 _ABOUT = """\
 ## Checks
 
-Each of the following cells is a check. One that has its points says nothing, the last shows the picture; one \
-that fails says for which input, what was wanted and what came. They take what the cells of this notebook \
-define, all of it numpy or plain Python, and try it in a process of its own: what you import beyond that is \
+Each of the following cells is a check. One that has its points says nothing, and the last shows the picture;
+one that fails says for which input, what was wanted and what came. They take what the cells of this notebook
+define, all of it numpy or plain Python, and try it in a process of its own: what you import beyond that is
 refused there."""
 
 
@@ -131,7 +131,7 @@ def _test(exercise: Exercise, title: str, says: str, points: int, seed: int) -> 
 
 
 def solution(exercise: Exercise) -> str:
-    """Return the cell that students write in: each body a solution to be taken out, helpers in that of the last.
+    """Return the cell that students write in: bodies are marked to be taken out, helpers with the last.
 
     Parameters
     ----------

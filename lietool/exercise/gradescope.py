@@ -88,7 +88,7 @@ def results(root: Path) -> dict[str, Any]:
 
 
 def require_renderer() -> None:
-    """Raise RuntimeError where no picture can be judged: the grader is to be mended, nobody has lost points."""
+    """Raise RuntimeError where no picture can be judged: nobody may lose points by that."""
     from lietool.render import context
 
     if not context.get().canonical:
@@ -122,16 +122,15 @@ def _text(path: Path) -> str | None:
 
 
 def _found(exercise: Exercise, files: Mapping[Path, str | None], *, alone: bool) -> _Found:
-    """Which of the files is for an exercise: the one that says so, else the one with its name or the only one."""
+    """Which file is for an exercise: the one that says so, else that with its name, or the only one."""
     wanted = file_name(exercise)
     mine = [path for path, text in files.items() if text and load.which(text) == exercise.name]
     mine = [path for path in mine if path.name == wanted] or mine
     mine = mine or [path for path in files if path.name == wanted]
     mine = mine or (list(files) if alone and len(files) == 1 else [])
     if not mine:
-        return _Found(
-            trouble=f"Nothing was handed in for it: {wanted}, whose first line is `{load.HEADER}{exercise.name}`."
-        )
+        first = f"{load.HEADER}{exercise.name}"
+        return _Found(trouble=f"Nothing was handed in for it: {wanted}, whose first line is `{first}`.")
     if len(mine) > 1:
         listed = ", ".join(path.as_posix() for path in mine)
         return _Found(trouble=f"There are {len(mine)} files for it, {listed}. Hand in one.")

@@ -1,8 +1,8 @@
 """The checks of an exercise in the cells of a notebook, as `lietool exercise export --to nbgrader` writes it.
 
 What the cells define is graded as a file would be: in a process of its own, with the same limits, the same
-words, the same marks.  But a notebook runs in the kernel that grades it: a student who means harm can do there
-what nbgrader lets him do, and such notebooks belong into a container.
+words, the same marks.  But a notebook runs in the kernel that grades it: who means harm can do there what
+nbgrader lets a notebook do, and notebooks of strangers belong in a container.
 """
 
 import sys
@@ -86,7 +86,8 @@ def _cells() -> list[str]:
 
 def _show(shown: Shown, passed: bool) -> None:
     """Show what the student's function draws, and the plate where that is another."""
-    from IPython.display import Image, Markdown, display
+    # It is wherever there is a notebook, and nowhere else needed.
+    from IPython.display import Image, Markdown, display  # pyright: ignore[reportMissingImports]
 
     from lietool.golden import explain
 
@@ -95,4 +96,4 @@ def _show(shown: Shown, passed: bool) -> None:
         pictures.append(("As it should be:", shown.reference))
     for says, image in pictures:
         if image is not None:
-            display(Markdown(says), Image(data=explain.png(image), width=_WIDTH))
+            display(Markdown(says), Image(data=explain.png(image), width=_WIDTH, alt=says))

@@ -47,7 +47,8 @@ def _of_finding(finding: Finding, source: list[str]) -> Iterator[str]:
     yield f"  {finding.says}"
     for name, word in _PARTS:
         if text := getattr(finding, name):
-            yield f"    {word:7}{text}"
+            # Of a picture it is a sentence.
+            yield f"    {word:7}{text}" if finding.got or name != "off" else f"    {text}"
     if finding.trouble:
         yield f"    {_quoted(finding.trouble, source)}"
 

@@ -10,8 +10,8 @@ from lietool.verbs import _studio
 _SYSTEMS = ("gradescope", "nbgrader", "plain")
 # What comes next.
 _NEXT = {
-    "gradescope": "Upload autograder.zip to a programming assignment of {total} points, and hand out students/.",
-    "nbgrader": "In that folder nbgrader knows {count} as an assignment: `nbgrader generate_assignment {first}`.",
+    "gradescope": "Upload autograder.zip to a programming assignment of {total} points; hand out students/.",
+    "nbgrader": "There nbgrader knows {count} as an assignment: `nbgrader generate_assignment {first}`.",
     "plain": "Hand out students/; ./grade.sh FOLDER grades what comes back.",
 }
 
@@ -36,12 +36,13 @@ _NEXT = {
 def command(names: tuple[str, ...], to: tuple[str, Path], seed: int) -> None:
     """Write exercises as an assignment for a class, all of them where none is named.
 
-    gradescope: autograder.zip to be uploaded, and a folder for students.
-    nbgrader: a course with a source notebook for each exercise; it needs
-    nbformat (pip install nbformat).
-    plain: a folder for students, and a script that grades what comes back.
-    In each is the lietool that runs, as a wheel: so students and graders have
-    what you have tried.  DIR/README.md says what to do with it.
+    \b
+    gradescope  autograder.zip to be uploaded there, and a folder for students
+    nbgrader    a course with a source notebook for each exercise; needs nbformat
+    plain       a folder for students, and a script that grades what comes back
+
+    Each has the lietool that runs as a wheel: so students and graders have what
+    you have tried.  DIR/README.md says what to do with it.
     """
     from lietool.exercise import export, export_wheel
 
