@@ -1,6 +1,7 @@
 """`lietool exercise check --report`: a page for each submission, and a table that leads to them."""
 
 import functools
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from lietool.exercise import Exercise, picture
 from lietool.golden import explain, marks_page
 from lietool.verbs import _exercise_tell
 from lietool.verbs._exercise_class import Marked
+from lietool.verbs._exercise_read import printable
 from lietool.verbs._exercise_tell import Row
 
 PAGE = "index.html"
@@ -65,7 +67,8 @@ def _page(each: Marked, notes: Sequence[str]) -> str:
     expected = _reference(about["picture"]["plate"]) if about["picture"] else None
     return marks_page.submission(
         about,
-        file=each.submission.file,
+        # Whoever gets it need not know the grader's folders.
+        file=printable(each.submission.path.name),
         expected=expected,
         actual=made.picture,
         drawn=made.drawn,
@@ -78,11 +81,21 @@ def _reference(plate: str) -> bytes:
     return explain.png(picture.golden(plate).image)
 
 
+def _common(files: Sequence[str]) -> str:
+    """Return the beginning that all names have in common, as far as it is a folder."""
+    try:
+        folder = os.path.commonpath(files)
+    except ValueError:
+        # Some from the root and some from here.
+        return ""
+    return folder.rstrip(os.sep) + os.sep if folder else ""
+
+
 def _groups(
     rows: Sequence[Row], exercises: Mapping[str, Exercise], links: Mapping[str, str]
 ) -> "list[dict[str, Any]]":
     """The tables of a class: one for each exercise in the order of the book, and what is for none."""
-    made = []
+    made, start = [], len(_common([row.file for row in rows]))
     for name in [*exercises, ""]:
         mine = [row for row in rows if (row.exercise if row.exercise in exercises else "") == name]
         if not mine:
@@ -94,7 +107,7 @@ def _groups(
                 "checks": checks,
                 "rows": [
                     {
-                        "file": row.file,
+                        "file": row.file[start:],
                         "href": links.get(row.file, ""),
                         "marks": f"{row.marks} of {row.of}" if row.of else "0",
                         "checks": [row.checks.get(title, 0) > 0 for title in checks],

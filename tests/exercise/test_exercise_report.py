@@ -65,6 +65,15 @@ def test_what_a_student_writes_is_text(submit, exercise) -> None:
     assert "<x>" not in made
 
 
+def test_who_gets_a_page_does_not_see_folders(submit, exercise) -> None:
+    for file in ("secret/a/x.py", "secret/b/y.py"):
+        submit("right", file)
+    exercise("check", "secret/a/x.py", "secret/b/y.py", "--report", "report")
+    assert "secret" not in Path("report/x.html").read_text()
+    index = Path("report/index.html").read_text()
+    assert '<a href="x.html">a/x.py</a>' in index and '<a href="y.html">b/y.py</a>' in index
+
+
 def test_a_submission_without_a_picture_has_a_page() -> None:
     about = {**_ABOUT, "checks": [], "trouble": "nothing came"}
     page = marks_page.submission(about, file="x.py", expected=None, actual=None, drawn=False)
