@@ -11,6 +11,8 @@ from lietool.lie import so2
 from lietool.mesh import topology
 from lietool.mesh.shapes import Shape
 
+from ._morph_form import LIBRARY, Forms, weights
+
 Array = np.ndarray
 
 HOMOTOPIES = {"logexp": triangle.logexp, "arap": triangle.arap, "linear": triangle.linear}
@@ -99,10 +101,14 @@ class Way:
     theta: Array
     led: Led
     prepared: shape.Prepared
+    forms: Forms = LIBRARY
 
     def at(self, t: Array) -> shape.Result:
         """The shape at some times."""
-        return shape.solve(self.prepared, t)
+        if not self.forms.others(self.choice.energy):
+            return shape.solve(self.prepared, t)
+        share = weights(self.prepared, self.choice.weights == "equal")
+        return self.forms.solve(self.choice.energy, self.prepared, share, t)
 
     def back(self, t: Array) -> Array:
         """The vertices (T, n, 2) of the way from the target to the source, with time reversed."""
@@ -171,9 +177,14 @@ class Way:
         }
 
 
-@lru_cache(maxsize=16)
-def way(pair: Shape, choice: Choice) -> Way:
+def way(pair: Shape, choice: Choice, forms: Forms = LIBRARY) -> Way:
     """Return the interpolation that the parameters ask for; of a film, the same for every frame."""
+    own = _way(pair, choice)
+    return replace(own, forms=forms) if forms.others(choice.energy) else own
+
+
+@lru_cache(maxsize=16)
+def _way(pair: Shape, choice: Choice) -> Way:
     start = seed_triangle(pair, choice.seed)
     maps = shape.local_maps(pair.source, pair.target, pair.faces)
     theta = local_angles(pair, choice, maps)

@@ -14,6 +14,7 @@ from lietool.render.plane import Plane
 from lietool.render.scene import Picture, Record
 
 from . import _morph, _morph_compare, _morph_maps, _morph_row, _morph_stages, _morph_strip
+from ._morph_form import Forms
 
 # Of E^F, beside E^R, where only the direction of an edge is given: so much keeps the size of the whole.
 _SHARE = 0.1
@@ -60,9 +61,9 @@ def local(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
     return Drawing(picture, numbers, _mesh(corners.reshape(-1, 2), apart))
 
 
-def whole(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
+def whole(pair: Shape, choice: _morph.Choice, forms: Forms, t: float) -> Drawing:
     """Return the whole shape at time t."""
-    way = _morph.way(pair, choice)
+    way = _morph.way(pair, choice, forms)
     found = way.at(np.array([t]))
     reached = np.concatenate([_extents(pair, choice), way.measured.vertices.reshape(-1, 2)])
     places = _morph_stages.stage(pair, reached)
@@ -73,9 +74,9 @@ def whole(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
     return _moment(picture, way, found)
 
 
-def alone(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
+def alone(pair: Shape, choice: _morph.Choice, forms: Forms, t: float) -> Drawing:
     """Return nothing but the whole shape at time t, where it is at rest while others pass."""
-    way = _morph.way(pair, choice)
+    way = _morph.way(pair, choice, forms)
     found = way.at(np.array([t]))
     place = _morph_stages.page(way.measured.vertices)
     shown = _led(place, way, found)
@@ -83,12 +84,12 @@ def alone(pair: Shape, choice: _morph.Choice, t: float) -> Drawing:
     return _moment(picture, way, found)
 
 
-def beside(pair: Shape, choice: _morph.Choice, other: str, t: float) -> Drawing:
+def beside(pair: Shape, choice: _morph.Choice, forms: Forms, other: str, t: float) -> Drawing:
     """Return two ways at time t, and where each of them has its errors, or how far the way back is off."""
     both = "symmetric" in (choice.energy, other)
     strips = []
     for asked in (choice, _rows(choice, other)[1][0]):
-        way = _morph.way(pair, asked)
+        way = _morph.way(pair, asked, forms)
         strips.append(_morph_row.Strip(_name(asked), way, way.at(np.array([t])), both))
     numbers: dict[str, object] = {}
     for suffix, strip in zip(("", "_beside"), strips, strict=True):
@@ -136,7 +137,7 @@ def _extents(pair: Shape, choice: _morph.Choice) -> np.ndarray:
     return np.concatenate([*torn, _morph.way(pair, plain).measured.vertices.reshape(-1, 2)])
 
 
-def frames(pair: Shape, choice: _morph.Choice, beside: str, steps: int, t: float) -> Drawing:
+def frames(pair: Shape, choice: _morph.Choice, forms: Forms, beside: str, steps: int, t: float) -> Drawing:
     """Return a strip of frames, or two of them."""
     before, after = _rows(choice, beside)
     choices = [*before, choice, *after]
@@ -144,7 +145,7 @@ def frames(pair: Shape, choice: _morph.Choice, beside: str, steps: int, t: float
     both = "symmetric" in (choice.energy, beside)
     strips = []
     for asked in choices:
-        way = _morph.way(pair, asked)
+        way = _morph.way(pair, asked, forms)
         strips.append(_morph_row.Strip(_name(asked), way, way.at(times), both))
     numbers: dict[str, object] = {"times": times}
     suffixes = [*["_above"] * len(before), "", *["_beside"] * len(after)]
@@ -159,18 +160,18 @@ def frames(pair: Shape, choice: _morph.Choice, beside: str, steps: int, t: float
         numbers |= {name + suffix: value for name, value in shown.items()}
     # The middle one of the row that was asked for is that of the moment t.
     V = strips[len(before)].frames.vertices[steps]
-    unseen = _unseen(pair, choice) if len(strips) == 1 else None
+    unseen = _unseen(pair, choice, forms) if len(strips) == 1 else None
     if unseen is not None:
         numbers |= {f"{name}_unseen": value for name, value in unseen.numbers.items()}
     return Drawing(_morph_strip.picture(strips, t, unseen), numbers, _mesh(V, pair.faces))
 
 
-def _unseen(pair: Shape, choice: _morph.Choice) -> _morph.Way | None:
+def _unseen(pair: Shape, choice: _morph.Choice, forms: Forms) -> _morph.Way | None:
     """Where vertices are led on curves, what the other energy makes of it: E^R, or E^F beside the others."""
     if choice.constraint != "loci":
         return None
     energy = "similarity" if choice.energy == "frobenius" else "frobenius"
-    return _morph.way(pair, replace(choice, energy=energy))
+    return _morph.way(pair, replace(choice, energy=energy), forms)
 
 
 def _rows(choice: _morph.Choice, beside: str) -> tuple[list[_morph.Choice], list[_morph.Choice]]:

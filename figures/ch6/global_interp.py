@@ -3,10 +3,11 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 
 from . import _morph, _pairs
 from . import _morph_pages as pages
+from ._morph_form import MATRIX, PULL, SIMILARITY, Forms
 
 _MOVING = ("stage", "local", "global", "morph", "frames")
 _WHOLE = ("stage", "global", "morph", "frames")
@@ -268,6 +269,10 @@ def global_interp(
     target: Annotated[
         Path | None, Param("the shape that it turns into, of the same kind", positional=2)
     ] = None,
+    *,
+    matrix: Library = MATRIX,
+    pull: Library = PULL,
+    similarity: Library = SIMILARITY,
 ) -> Drawing:
     """Two triangulated shapes and the ways between them, from the local maps to the whole shape.
 
@@ -280,6 +285,7 @@ def global_interp(
     """
     pair = _pairs.pair(example, source, target)
     choice = _morph.Choice(energy, homotopy, angles, constraint, seed, turns, winding, w, weights)
+    forms = Forms(matrix, pull, similarity)
     match stage:
         case "ends":
             return pages.ends(pair, t)
@@ -288,9 +294,9 @@ def global_interp(
         case "local":
             return pages.local(pair, choice, t)
         case "global" if beside != "none":
-            return pages.beside(pair, choice, beside, t)
+            return pages.beside(pair, choice, forms, beside, t)
         case "global":
-            return pages.whole(pair, choice, t)
+            return pages.whole(pair, choice, forms, t)
         case "morph":
-            return pages.alone(pair, choice, t)
-    return pages.frames(pair, choice, beside, steps, t)
+            return pages.alone(pair, choice, forms, t)
+    return pages.frames(pair, choice, forms, beside, steps, t)
