@@ -1,6 +1,6 @@
 """What is written in a figure file and comes out of it: plates with their tolerances, time, drawings."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -51,7 +51,8 @@ class Drawing:
     Where it shows a mesh that somebody may want to have, that too, as a `lietool.mesh.surface.Mesh`; and
     notes, a line each, of what is not as one would expect, which are told beside the file that is written.
     Where a film is to go through a sequence rather than forth and back, `moments` are its frames' times, and
-    `fps` how many there are in a second.
+    `fps` how many there are in a second.  Where its pictures are to share what each has for itself alone,
+    such as a camera, `film` returns them from the values of the time.
     """
 
     picture: Any
@@ -60,3 +61,4 @@ class Drawing:
     notes: tuple[str, ...] = ()
     moments: tuple[float, ...] = ()
     fps: float = 24.0
+    film: Callable[[Sequence[float]], Sequence[Any]] | None = None

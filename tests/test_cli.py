@@ -8,7 +8,8 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -522,6 +523,26 @@ def test_a_film_draws_every_moment_once(folder: Path, monkeypatch: pytest.Monkey
     drawn.clear()
     assert json.loads(_run("ball", "--draft", "-o", "a.gif", "--json").stdout)["hue"] == "red"
     assert drawn == [90.0, *(45.0 * k for k in range(8))]
+
+
+def test_a_figure_may_draw_all_moments_of_a_film_together(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[list[float]] = []
+    alone = figure.Figure.draw
+
+    def draw(self: figure.Figure, **params: object) -> figure.Drawing:
+        def film(moments: Sequence[float]) -> list[object]:
+            asked.append(list(moments))
+            return [alone(self, **params | {"turn": turn}).picture for turn in moments]
+
+        return replace(alone(self, **params), film=film)
+
+    monkeypatch.setattr(figure.Figure, "draw", draw)
+    assert _run("ball", "--draft", "-o", "a.gif").exit_code == 0
+    assert asked == [[45.0 * k for k in range(8)]]
+    with Image.open(folder / "a.gif") as image:
+        assert len(list(ImageSequence.Iterator(image))) == 8
 
 
 def _counting(drawn: list[object]) -> Callable[..., object]:

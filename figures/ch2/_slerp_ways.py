@@ -1,5 +1,6 @@
 """Three ways from one rotation to another: slerp, normalised lerp, and a straight line of Euler angles."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,7 @@ class Ways:
     opposite: bool
     angles: np.ndarray
     turns: np.ndarray
+    slerp: Callable[..., np.ndarray] = quaternion.slerp
 
     @property
     def theta(self) -> float:
@@ -36,7 +38,7 @@ class Ways:
         """Return slerp (2.32), shape (n, 4); between opposite ends that of the exponential map (2.31)."""
         if self.opposite:
             return quaternion.multiply(quaternion.exp(t[:, None] * self.line), self.start)
-        return quaternion.slerp(self.start, self.end, t)
+        return self.slerp(self.start, self.end, t)
 
     def rotations(self, t: np.ndarray) -> np.ndarray:
         """Return the rotations of the three ways, shape (3, n, 3, 3); NaN where nlerp is undefined."""
@@ -97,7 +99,7 @@ class Ways:
         return self.angles + t[:, None] * self.turns
 
 
-def between(start: np.ndarray, end: np.ndarray) -> Ways:
+def between(start: np.ndarray, end: np.ndarray, slerp: Callable[..., np.ndarray] = quaternion.slerp) -> Ways:
     """Return the three ways between two unit quaternions."""
     # As in quaternion.slerp, but with room for the rounding of the two lengths.
     opposite = bool(np.linalg.norm(start + end) <= 2.0 * series.ROUNDED)
@@ -106,4 +108,4 @@ def between(start: np.ndarray, end: np.ndarray) -> Ways:
     ends = euler.from_matrix(quaternion.to_matrix(np.stack([start, end])), CONVENTION)
     turns = ends[1] - ends[0]
     turns = turns - 2.0 * np.pi * np.ceil(turns / (2.0 * np.pi) - 0.5)
-    return Ways(start, end, line, opposite, ends[0], turns)
+    return Ways(start, end, line, opposite, ends[0], turns, slerp)

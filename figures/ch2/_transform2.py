@@ -8,18 +8,20 @@ from lietool.render.solids import grid_faces
 
 from . import _letters
 from . import _motions as m
+from ._dual_motions import Motions
 
 # Of a picture without legend.
 _BOX = (110.0, 118.0, 980.0, 650.0)
 
 
-def rotation(theta: float, place: np.ndarray, t: float) -> Drawing:
+def rotation(theta: float, place: np.ndarray, t: float, by: Motions) -> Drawing:
     """R_theta about the origin."""
     radius = float(np.linalg.norm(place))
     size = 0.62 * radius or 1.0
-    start = m.shift(place)
-    end = m.turn(theta) @ start
-    middles = [m.turn(part * theta) @ start for part in (1.0 / 3.0, 2.0 / 3.0)]
+    first = by.shift(place)
+    turns = by.turn(theta * np.array([1.0 / 3.0, 2.0 / 3.0, 1.0, t]))
+    start = by.matrix(first)
+    *middles, end, now = by.matrix(by.product(turns, first))
     circle = plane.arc(m.ORIGIN, radius, 0.0, 2.0 * np.pi, 121)
     spokes = [np.stack([m.ORIGIN, T[:2, 2]]) for T in (start, end)]
     letter = _letters.tracked(size, [start, *middles, end], [circle, *spokes])
@@ -29,7 +31,7 @@ def rotation(theta: float, place: np.ndarray, t: float) -> Drawing:
     arcs = [m.about(m.ORIGIN, place, theta, 0.38 * radius), m.about(m.ORIGIN, far, theta, 0.68 * radius)]
     orbit = plane.arc(m.ORIGIN, reach, 0.0, 2.0 * np.pi, 121)
     page = m.fit([orbit, *arcs], size, _BOX)
-    far_after = m.turn(theta)[:2, :2] @ far
+    far_after = by.act(turns[2], far)
     records: list[scene.Record] = [
         *_rings(page, radius, reach),
         *_axes(page, np.concatenate([orbit, *arcs])),
@@ -39,7 +41,7 @@ def rotation(theta: float, place: np.ndarray, t: float) -> Drawing:
         *letter.draw(page, end, _letters.OUTLINE if t < 1.0 else _letters.END),
     ]
     if t < 1.0:
-        records += letter.draw(page, m.turn(t * theta) @ start, _letters.END)
+        records += letter.draw(page, now, _letters.END)
     records += [page.line(spoke, style.INK) for spoke in spokes]
     for arc in arcs:
         records += m.angle(page, arc, m.ORIGIN)
@@ -54,7 +56,7 @@ def rotation(theta: float, place: np.ndarray, t: float) -> Drawing:
         "other": np.stack([far, far_after]),
         "before": letter.outline(start),
         "after": letter.outline(end),
-        "now": m.turn(t * theta) @ start,
+        "now": now,
     }
     return Drawing(m.picture(records), numbers)
 
@@ -94,22 +96,23 @@ def _feet(page: plane.Plane, x: np.ndarray, x_after: np.ndarray, radius: float) 
     return records
 
 
-def rigid(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing:
+def rigid(theta: float, b: np.ndarray, place: np.ndarray, t: float, by: Motions) -> Drawing:
     """T_b R_theta, and R_theta T_b = T_{R_theta b} R_theta."""
-    start, R, T_b = m.shift(place), m.turn(theta), m.shift(b)
-    shapes = [start, R @ start, T_b @ start, T_b @ R @ start, R @ T_b @ start]
+    start, R, T_b = by.shift(place), by.turn(theta), by.shift(b)
+    stages = [start, by.product(R, start), by.product(T_b, start)]
+    b_turned = by.act(R, b)
+    stages += [by.product(T_b, stages[1]), by.product(by.of(theta, b_turned), start)]
+    shapes = list(by.matrix(np.stack(stages)))
 
-    def at(t: float) -> list[np.ndarray]:
-        one, two = m.parts(t, 2)
-        long = m.turn(two * theta) @ m.shift(one * b) @ start
-        return [m.shift(two * b) @ m.turn(one * theta) @ start, long]
-
-    b_turned = R[:2, :2] @ b
+    one, two = _parts(t, 2)
+    short = by.product(by.shift(two[:, None] * b), by.turn(one * theta), start)
+    long = by.product(by.turn(two * theta), by.shift(one[:, None] * b), start)
+    along = by.matrix(np.stack([short, long], axis=1))
     again = m.same(b, b_turned, float(np.abs(b).max()))
     shown = m.vectors(b, b_turned)
     given = rf"$\theta = {m.degrees(theta)},\;\; b = {shown[0]},\;\; b' = R_\theta\, b = {shown[1]}$"
     records = [
-        *_both_orders(theta, b, b_turned, shapes, at, t, again),
+        *_both_orders(theta, b, b_turned, shapes, along, t, again),
         m.title("two orders, the same end" if again else "two orders, two ends, turned alike"),
         *m.legend([(m.FIRST, r"$T_b\, R_\theta$"), (m.SECOND, r"$R_\theta\, T_b = T_{b'}\, R_\theta$")]),
         m.note(given),
@@ -120,7 +123,7 @@ def rigid(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing:
         "b'": b_turned,
         "stages": np.stack([shapes[0], shapes[1], shapes[3]]),
         "other_order": np.stack([shapes[0], shapes[2], shapes[4]]),
-        "now": np.stack(at(t)),
+        "now": along[-1],
     }
     return Drawing(m.picture(records), numbers)
 
@@ -130,7 +133,7 @@ def _both_orders(
     b: np.ndarray,
     b_turned: np.ndarray,
     shapes: list[np.ndarray],
-    at: m.Moving,
+    along: np.ndarray,
     t: float,
     again: bool,
 ) -> list[scene.Record]:
@@ -143,7 +146,7 @@ def _both_orders(
     angle = m.about(feet[1], feet[1] + b, theta, 0.42 * float(np.linalg.norm(b)))
     around = m.about(m.ORIGIN, feet[0], theta, 0.38 * float(np.linalg.norm(feet[0])))
     letter = _letters.tracked(size, shapes, [*legs, *others, angle])
-    page = m.fit([m.ORIGIN, angle, *legs, *others, *m.swept(letter, at)], size)
+    page = m.fit([m.ORIGIN, angle, *legs, *others, *_swept(letter, along)], size)
     records: list[scene.Record] = [
         *m.fan(page, m.ORIGIN, others[1], style.ROUTE_2, 0.09),
         *m.fan(page, m.ORIGIN, legs[0], style.ROUTE_1, 0.12),
@@ -157,9 +160,8 @@ def _both_orders(
         *letter.draw(page, shapes[3], _letters.END if t == 1.0 else _letters.OUTLINE),
     ]
     if t < 1.0:
-        now = at(t)
-        records += letter.draw(page, now[1], _letters.OTHER_END)
-        records += letter.draw(page, now[0], _letters.Look(style.AFTER, m.FIRST.text))
+        records += letter.draw(page, along[-1, 1], _letters.OTHER_END)
+        records += letter.draw(page, along[-1, 0], _letters.Look(style.AFTER, m.FIRST.text))
     # Where both orders are one, so are the shifts, and one name is enough.
     names = (
         ("", r"2\!:\; R_\theta", "") if again else (r"1\!:\; T_b", r"2\!:\; R_\theta", r"b' = R_\theta\, b")
@@ -174,20 +176,20 @@ def _both_orders(
     return [*records, m.center(page, "$O$", m.ORIGIN, -np.mean(feet, axis=0))]
 
 
-def about(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing:
+def about(theta: float, b: np.ndarray, place: np.ndarray, t: float, by: Motions) -> Drawing:
     """T_b R_theta T_-b, the turn about b."""
-    steps = [m.shift(-b), m.turn(theta), m.shift(b)]
-    shapes = [m.shift(place)]
+    steps = [by.shift(-b), by.turn(theta), by.shift(b)]
+    stages = [by.shift(place)]
     for step in steps:
-        shapes.append(step @ shapes[-1])
-
-    def at(t: float) -> list[np.ndarray]:
-        one, two, three = m.parts(t, 3)
-        long = m.shift(three * b) @ m.turn(two * theta) @ m.shift(-one * b) @ shapes[0]
-        return [long, m.shift(b) @ m.turn(t * theta) @ m.shift(-b) @ shapes[0]]
-
+        stages.append(by.product(step, stages[-1]))
+    shapes = list(by.matrix(np.stack(stages)))
+    one, two, three = _parts(t, 3)
+    back, there = by.shift(three[:, None] * b), by.shift(-one[:, None] * b)
+    long = by.product(back, by.turn(two * theta), there, stages[0])
+    short = by.product(steps[2], by.turn(_moments(t) * theta), steps[0], stages[0])
+    along = by.matrix(np.stack([long, short], axis=1))
     records = [
-        *_three_steps(theta, b, shapes, at, t),
+        *_three_steps(theta, b, shapes, along, t),
         m.title(r"shift, turn, shift back: a turn about $b$"),
         *m.legend([(m.FIRST, r"$T_b\, R_\theta\, T_{-b}$"), (m.SECOND, r"turn by $\theta$ about $b$")]),
         m.note(rf"$\theta = {m.degrees(theta)},\;\; b = {m.vectors(b)[0]}$"),
@@ -196,14 +198,29 @@ def about(theta: float, b: np.ndarray, place: np.ndarray, t: float) -> Drawing:
         "theta": theta,
         "b": b,
         "stages": np.stack(shapes),
-        "product": steps[2] @ steps[1] @ steps[0],
-        "now": np.stack(at(t)),
+        "product": by.matrix(by.product(*steps[::-1])),
+        "now": along[-1],
     }
     return Drawing(m.picture(records), numbers)
 
 
+def _moments(t: float) -> np.ndarray:
+    """Times all along the way, for a page that holds it, and last the one that is shown."""
+    return np.append(np.linspace(0.0, 1.0, 61), t)
+
+
+def _parts(t: float, steps: int) -> np.ndarray:
+    """How much (steps, n) of each step is done at `_moments`."""
+    return np.array([m.parts(float(moment), steps) for moment in _moments(t)]).T
+
+
+def _swept(letter: _letters.Letter, along: np.ndarray) -> list[np.ndarray]:
+    """The corners of the letter all along the ways (n, 2, 3, 3)."""
+    return [letter.outline(T) for T in along.reshape(-1, 3, 3)]
+
+
 def _three_steps(
-    theta: float, b: np.ndarray, shapes: list[np.ndarray], at: m.Moving, t: float
+    theta: float, b: np.ndarray, shapes: list[np.ndarray], along: np.ndarray, t: float
 ) -> list[scene.Record]:
     feet = [T[:2, 2] for T in shapes]
     size = 0.24 * m.extent([m.ORIGIN, b, *feet]) or 1.0
@@ -212,7 +229,7 @@ def _three_steps(
     radius = 0.3 * float(np.linalg.norm(feet[1]))
     angles = [m.about(c, foot, theta, radius) for c, foot in ((m.ORIGIN, feet[1]), (b, feet[0]))]
     letter = _letters.tracked(size, shapes, [*legs, direct, m.straight(m.ORIGIN, b)])
-    page = m.fit([m.ORIGIN, b, direct, *legs, *m.swept(letter, at)], size)
+    page = m.fit([m.ORIGIN, b, direct, *legs, *_swept(letter, along)], size)
     spokes = ((m.ORIGIN, feet[1]), (m.ORIGIN, feet[2]), (b, feet[0]), (b, feet[3]))
     records: list[scene.Record] = [
         m.area(page, [m.ORIGIN, b, feet[0], feet[1]], style.BEFORE, 0.45),
@@ -222,7 +239,7 @@ def _three_steps(
         *m.angle(page, angles[0], m.ORIGIN),
         *(m.angle(page, angles[1], b) if b.any() else []),
         *letter.stages(page, shapes[:3]),
-        *m.travellers(page, letter, at(t), shapes[3], t),
+        *m.travellers(page, letter, list(along[-1]), shapes[3], t),
     ]
     for k, (curve, name) in enumerate(zip(legs, ("T_{-b}", r"R_\theta", "T_b"), strict=True)):
         # The first beyond the sector about b.

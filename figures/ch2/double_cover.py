@@ -1,14 +1,10 @@
 """Figure 2.7 of the book."""
 
-from dataclasses import dataclass
-from itertools import pairwise
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
-from lietool.lie import quaternion, so3
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 from lietool.render import scene, solids, style
 from lietool.render.camera import Box, Camera
 from lietool.render.globe import globe, joined
@@ -16,10 +12,11 @@ from lietool.render.marks import LETTER, LETTER_BEFORE, beyond, curved_arrow, le
 from lietool.render.plot import Axes, number
 
 from . import _directions
+from ._double_cover import FULL, Shown, distances, lift
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
-FULL = 2.0 * np.pi
+_MULTIPLY, _ACT = Library("lietool.lie.quaternion.multiply"), Library("lietool.lie.quaternion.act")
 # The solid is looked at from here; on the sphere it is turned so that it looks the same.
 LOOK = (1.0, 0.45, 0.38)
 _SOLID: Box = (20.0, 372.0, 440.0, 440.0)
@@ -64,6 +61,9 @@ def double_cover(
         0.0,
         0.0,
     ),
+    *,
+    multiply: Library = _MULTIPLY,
+    act: Library = _ACT,
 ) -> Drawing:
     """The double cover: while a solid turns twice, its unit quaternion goes round once.
 
@@ -76,9 +76,10 @@ def double_cover(
     u, start = _directions.unit("axis", axis), _directions.unit("q", q)
     theta = float(np.deg2rad(turn))
     stages = np.arange(8) * np.pi / 2.0
-    shown = Shown(u, start, theta, stages, lift(u, start, stages), lift(u, start, theta))
+    at_stages, now = (lift(u, start, angle, multiply) for angle in (stages, theta))
+    shown = Shown(u, start, theta, stages, at_stages, now, multiply, act)
     along = np.linspace(0.0, max(theta, 2.0 * FULL), 241)
-    far = distances(lift(u, start, along), start)
+    far = distances(shown.at(along), start)
     here = distances(shown.now, start)
     look = Camera(LOOK, (0.0, 0.0, 0.0), 2.6)
     views = (
@@ -90,54 +91,13 @@ def double_cover(
         "axis": u,
         "stages": np.rad2deg(stages),
         "quaternions": shown.at_stages,
-        "rotations": quaternion.to_matrix(shown.at_stages),
+        "rotations": shown.turned_at_stages,
         "quaternion": shown.now,
-        "rotation": quaternion.to_matrix(shown.now),
+        "rotation": shown.turned,
         "turn": np.rad2deg(along),
         "distances": np.rad2deg(far),
     }
     return Drawing(scene.Picture(views), numbers)
-
-
-@dataclass(frozen=True, eq=False)
-class Shown:
-    """The turning about `u` from `start`: quaternions at some stages (n, 4), and now, at the angle theta."""
-
-    u: np.ndarray
-    start: np.ndarray
-    theta: float
-    stages: np.ndarray
-    at_stages: np.ndarray
-    now: np.ndarray
-
-    @property
-    def at_one(self) -> bool:
-        return bool(np.allclose(self.start, (1.0, 0.0, 0.0, 0.0)))
-
-    def on_sphere(self, q: np.ndarray) -> np.ndarray:
-        """Quaternions of the circle (..., 4) as points of space: the start up, u start on the right."""
-        imaginary = np.concatenate([[0.0], self.u])
-        up, right = self.start, quaternion.multiply(imaginary, self.start)
-        return np.stack([q @ right, np.zeros(q.shape[:-1]), q @ up], axis=-1)
-
-    def laps(self) -> list[np.ndarray]:
-        """The angles of each turn that has begun."""
-        ends = np.append(np.arange(0.0, self.theta - 1e-9, FULL), self.theta)
-        return [np.linspace(a, b, max(round((b - a) / 0.04), 1) + 1) for a, b in pairwise(ends)]
-
-
-def lift(u: np.ndarray, start: np.ndarray, theta: ArrayLike) -> np.ndarray:
-    """Return the quaternions exp(theta u / 2) start (..., 4), continuous in theta."""
-    half = 0.5 * np.asarray(theta, float)
-    return quaternion.multiply(quaternion.exp(half[..., None] * u), start)
-
-
-def distances(q: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """Return how far R and q (..., 4) are from the start, each in its own space (..., 2), radians."""
-    R, R0 = quaternion.to_matrix(q), quaternion.to_matrix(start)
-    of_R = np.linalg.norm(so3.log(R @ R0.T), axis=-1)
-    of_q = 2.0 * np.arctan2(np.linalg.norm(q - start, axis=-1), np.linalg.norm(q + start, axis=-1))
-    return np.stack([of_R, of_q], axis=-1)
 
 
 def _route(curve: np.ndarray, lap: int, radius: float) -> list[scene.Record]:
@@ -165,7 +125,7 @@ def _route(curve: np.ndarray, lap: int, radius: float) -> list[scene.Record]:
 
 def _solid(s: Shown, look: Camera) -> list[scene.Record]:
     """The solid as it is now, its axis, and about it the turns so far, each outside of the one before."""
-    records = letter(quaternion.to_matrix(s.now))
+    records = letter(s.turned)
     records += [
         scene.Arrow(-0.95 * s.u, 1.3 * s.u, style.INK, 0.012, 4.0),
         beyond(r"$\mathbf{u}$", 1.3 * s.u, s.u, look),
@@ -194,7 +154,7 @@ def _sphere(s: Shown, camera: Camera, look: Camera) -> list[scene.Record]:
         outside = 1.004 + 0.05 * (lap // 2)
         angles = angles[angles <= angles[-1] - 2.0 * _BALL]
         if len(angles) > 1:
-            records += _route(outside * s.on_sphere(lift(s.u, s.start, angles)), lap, _SHAFT)
+            records += _route(outside * s.on_sphere(s.at(angles)), lap, _SHAFT)
     now = 1.004 * s.on_sphere(s.now)
     for p in (now, -now):
         # Where the name of a stage lies on this radius it is left free; that of the start lies beside it.
@@ -209,7 +169,7 @@ def _stages(s: Shown, points: np.ndarray, camera: Camera, look: Camera) -> list[
     """On the radius of every stage its angle and a solid; stages that are still to come are pale."""
     carry = camera.axes.T @ look.axes
     records: list[scene.Record] = []
-    for theta, R, p in zip(s.stages, quaternion.to_matrix(s.at_stages), points, strict=True):
+    for theta, R, p in zip(s.stages, s.turned_at_stages, points, strict=True):
         reached = theta <= s.theta + 1e-9
         page = camera.axes[:2] @ p
         out = page / np.linalg.norm(page)

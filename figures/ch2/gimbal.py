@@ -1,11 +1,12 @@
 """Gimbal lock, section 2.6 of the book: equations (2.21) to (2.23)."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 from lietool.lie import euler, so3
 from lietool.render import marks, scene, solids, style
 from lietool.render.camera import Camera, Page
@@ -16,6 +17,9 @@ _SINGULAR = 1e-9
 # Where two axes share a line: the length of a stroke of each. Inside of _SOLID nothing crosses the solid.
 _STROKE, _SOLID = 0.075, 0.40
 NAMES = (r"\theta_1", r"\theta_2", r"\theta_3")
+_TO_MATRIX, _FROM_MATRIX = Library("lietool.lie.euler.to_matrix"), Library("lietool.lie.euler.from_matrix")
+# Of angles or a rotation, and of three axes such as "xyx".
+_Convert = Callable[[np.ndarray, str], np.ndarray]
 
 
 @figure(
@@ -60,6 +64,9 @@ def gimbal(
     theta3: Annotated[
         float, Param("turn of the outer ring about z", "deg", -360.0, 360.0, only=("view", "rings"))
     ] = -4.0,
+    *,
+    to_matrix: Library = _TO_MATRIX,
+    from_matrix: Library = _FROM_MATRIX,
 ) -> Drawing:
     """Gimbal lock: two of the three axes of the Euler angles coincide, and the angles jump.
 
@@ -71,10 +78,12 @@ def gimbal(
     passes through the lock.
     """
     angles = np.deg2rad([theta1, theta2, theta3])
-    return _rings(angles) if view == "rings" else _curves(float(angles[1]))
+    if view == "rings":
+        return _rings(angles, to_matrix)
+    return _curves(float(angles[1]), to_matrix, from_matrix)
 
 
-def _rings(angles: np.ndarray) -> Drawing:
+def _rings(angles: np.ndarray, to_matrix: _Convert) -> Drawing:
     # Always the same of the two locks, so that in motion nothing jumps as theta_2 passes 0.
     locked = np.array([angles[0], -np.pi / 2, angles[2]])
     both = np.stack([angles, locked])
@@ -82,15 +91,15 @@ def _rings(angles: np.ndarray) -> Drawing:
     smallest = euler.singular_values(both, "xyz").min(axis=-1)
     # From here the inner axis, on its way to lock, never points at the viewer.
     camera = Camera((0.8, 0.9, 0.62), height=3.2)
-    views = []
+    views, turned = [], to_matrix(both, "xyz")
     for i in range(2):
-        records = [*_gimbal(both[i]), *_axes(axes[i], camera)]
+        records = [*_gimbal(both[i], turned[i]), *_axes(axes[i], camera)]
         views.append(scene.View(tuple(records), camera, (600.0 * i, 84.0, 600.0, 690.0)))
         views.append(scene.View(tuple(_legend(300.0 + 600.0 * i, both[i], axes[i], float(smallest[i])))))
     views.append(scene.View((scene.Lines([(600, 60, 0), (600, 840, 0)], style.RULE, style.HAIR),)))
     numbers = {
         "angles": both,
-        "rotation": euler.to_matrix(both, "xyz"),
+        "rotation": turned,
         "axes": axes,
         "smallest_singular_value": smallest,
     }
@@ -114,7 +123,7 @@ def _legend(x: float, angles: np.ndarray, axes: np.ndarray, smallest: float) -> 
     ]
 
 
-def _gimbal(angles: np.ndarray) -> list[scene.Record]:
+def _gimbal(angles: np.ndarray, turned: np.ndarray) -> list[scene.Record]:
     """Rings from the outside in, each with the axle that carries the next; the solid is on the inner one."""
     outer, middle, inner = euler.ring_frames(angles, "xyz")
     # A ring is made about z; these bring that axis to the normal of the plane that holds both of its axles.
@@ -131,7 +140,7 @@ def _gimbal(angles: np.ndarray) -> list[scene.Record]:
     ):
         records += [scene.Tube([s * near * axis, s * far * axis], color, 0.035) for s in (-1.0, 1.0)]
     records.append(scene.Tube([0.31 * inner[:, 2], 0.52 * inner[:, 2]], style.INK, 0.025))
-    return records + marks.letter(inner, size=0.64)
+    return records + marks.letter(turned, size=0.64)
 
 
 def _ring(R: np.ndarray, radius: float, color: str) -> scene.Surface:
@@ -198,14 +207,21 @@ def _turn(center: np.ndarray, axis: np.ndarray, color: str, camera: Camera) -> l
     return marks.curved_arrow(center + 0.15 * ring, color, 0.012, 4.0)
 
 
-def _curves(marked: float) -> Drawing:
+def _about_z(theta: np.ndarray, to_matrix: _Convert) -> np.ndarray:
+    """R_z(theta) by its x-y-x angles as the text has them, (2.23)."""
+    quarter = np.full_like(theta, np.pi / 2.0)
+    return to_matrix(np.stack([-quarter, theta, quarter], axis=-1), "xyx")
+
+
+def _curves(marked: float, to_matrix: _Convert, from_matrix: _Convert) -> Drawing:
     # Midpoints of degrees: at 0 and 180 themselves the angles are not determined.
     theta = np.deg2rad(np.arange(-179.5, 180.0))
-    angles = euler.from_matrix(so3.rotation("z", theta), "xyx")
+    angles = from_matrix(_about_z(theta, to_matrix), "xyx")
     second = np.linspace(-np.pi, np.pi, 721)
     rows = np.stack([0.0 * second, second, 0.0 * second], axis=-1)
     smallest = {c: euler.singular_values(rows, c).min(axis=-1) for c in ("xyx", "xyz")}
-    here = euler.from_matrix(so3.rotation("z", marked), "xyx")
+    # That one without rounding, for it may be at lock.
+    here = from_matrix(so3.rotation("z", marked), "xyx")
     # The same rotations by the other choice of signs, with theta_2 below 0.
     other = angles * (1.0, -1.0, 1.0) + (np.pi, 0.0, np.pi)
     near = float(euler.singular_values(here, "xyx").min())
@@ -213,7 +229,7 @@ def _curves(marked: float) -> Drawing:
     page.append(_values(marked, here, near))
     numbers = {"theta": theta, "angles": angles, "theta_2": second, "marked": here}
     numbers["marked_singular_value"] = near
-    numbers["rotation_by_other_angles"] = euler.to_matrix(other, "xyx")
+    numbers["rotation_by_other_angles"] = to_matrix(other, "xyx")
     numbers |= {f"smallest_singular_value_{c}": s for c, s in smallest.items()}
     return Drawing(scene.Picture((scene.View(tuple(page), Page()),)), numbers)
 
@@ -274,7 +290,7 @@ def _jump(
 def _leaps(axes: Axes, sides: np.ndarray) -> list[scene.Record]:
     """The two jumps at theta = 0, on one line in strokes of both colours; `sides` are those of it."""
     records: list[scene.Record] = []
-    for k in (0, 2):
+    for k in (k for k in (0, 2) if sides[0, k] != sides[1, k]):
         start, end = axes.at([0.0, 0.0], sides[:, k])
         along = (end - start) / np.linalg.norm(end - start)
         # Each from its own start: an even number of strokes, so that the gaps of one hold those of the other.

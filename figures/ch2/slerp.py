@@ -4,12 +4,13 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 from lietool.lie import quaternion
 
 from . import _slerp_compare, _slerp_sphere, _slerp_ways
 
 Quaternion = tuple[float, float, float, float]
+_SLERP = Library("lietool.lie.quaternion.slerp")
 
 
 @figure(
@@ -55,6 +56,8 @@ def slerp(
         int, Param("equal steps from start to end; compare shows at most 8", low=1, high=60)
     ] = 6,
     t: Annotated[float, Param("the moment that is marked", low=0.0, high=1.0)] = 0.6,
+    *,
+    interpolate: Library = _SLERP,
 ) -> Drawing:
     """Slerp as the exponential map: equal steps on a tangent line become equal arcs on the sphere.
 
@@ -65,7 +68,7 @@ def slerp(
     carried to q0 by multiplication from the right (2.33).
     """
     start, end = _unit("q0", q0), _unit("q1", q1)
-    ways = _slerp_ways.between(start, end)
+    ways = _slerp_ways.between(start, end, interpolate)
     return _sphere(ways, steps, t) if view == "sphere" else _compare(ways, steps, t)
 
 

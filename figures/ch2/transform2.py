@@ -4,9 +4,10 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 
 from . import _transform2
+from ._dual_motions import Motions
 
 Vector = tuple[float, float]
 
@@ -66,6 +67,10 @@ def transform2(
         Vector, Param("where the marked corner of the shape stands (x, y)", low=-100.0, high=100.0)
     ] = (2.1, -1.1),
     t: Annotated[float, Param("how much of the motion is done", low=0.0, high=1.0)] = 1.0,
+    *,
+    number: Library = Library("lietool.lie.dual_complex.from_matrix"),
+    multiply: Library = Library("lietool.lie.dual_complex.multiply"),
+    act: Library = Library("lietool.lie.dual_complex.act"),
 ) -> Drawing:
     """A turn, a turn with a shift, or a turn about another point, of a shape in the plane.
 
@@ -76,10 +81,11 @@ def transform2(
     steps amount to one turn about b. At t < 1 the shape is on its way.
     """
     theta, shift, start = float(np.deg2rad(angle)), np.array(b), np.array(place)
+    by = Motions(number, multiply, act)
     match kind:
         case "rotation":
-            return _transform2.rotation(theta, start, t)
+            return _transform2.rotation(theta, start, t, by)
         case "rigid":
-            return _transform2.rigid(theta, shift, start, t)
+            return _transform2.rigid(theta, shift, start, t, by)
         case _:
-            return _transform2.about(theta, shift, start, t)
+            return _transform2.about(theta, shift, start, t, by)

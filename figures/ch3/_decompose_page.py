@@ -25,7 +25,10 @@ _FILLS = {
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """A factor: its name, its matrix, what it does, along which axes (columns) or by which angle."""
+    """A factor: its name, its matrix, what it does, along which axes (columns) or by which angle.
+
+    `off` is what the matrix of a turn has beside the rotation by its angle, if it was given a wrong one.
+    """
 
     name: str
     matrix: np.ndarray
@@ -33,11 +36,12 @@ class Step:
     axes: np.ndarray
     angle: float = 0.0
     angle_name: str = ""
+    off: np.ndarray | float = 0.0
 
     def part(self, done: float) -> np.ndarray:
         """The step as far as it has come; a reflection has to pass through its mirror."""
         if self.kind == "turn":
-            return so2.exp(done * self.angle)
+            return so2.exp(done * self.angle) + done * self.off
         return (1.0 - done) * np.eye(2) + done * self.matrix
 
 

@@ -1,11 +1,13 @@
 """Figure 3.3 of the book."""
 
+from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
-from lietool.lie import polar, so2
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
+from lietool.lie import so2
+from lietool.lie.polar import svd
 
 from . import _decompose_page as page
 
@@ -62,6 +64,8 @@ def decompose(
         1.0,
     ),
     t: Annotated[float, Param("how far the steps have come, one after the other", low=0.0, high=1.0)] = 1.0,
+    *,
+    polar: Library = Library("lietool.lie.polar.decompose"),
 ) -> Drawing:
     """A linear map taken apart: rotation, stretch along axes, rotation; or a stretch and a rotation.
 
@@ -75,6 +79,12 @@ def decompose(
     A = np.array(matrix).reshape(2, 2)
     U, d, V = _singular(A)
     steps = _steps(kind, U, d, V)
+    # What flattens or reflects has none.
+    if kind == "polar" and d[1] > 0.0 and np.linalg.det(U) > 0.0:
+        R, S = polar(A)
+        turn = _orthogonal(R)
+        off = R - so2.exp(turn.angle) if turn.kind == "turn" else 0.0
+        steps = (page.Step("S", S, "stretch", V), replace(turn, off=off))
     stages = _stages(steps, V, t)
     film = tuple(_stages(steps, V, moment) for moment in np.linspace(0.0, 1.0, 12 * len(steps) + 1))
     numbers = {
@@ -92,7 +102,7 @@ def decompose(
 
 def _singular(A: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A = U diag(d) V^T with a rotation V by -90 to 90 degrees and d >= 0; U reflects where A does."""
-    U, d, V = polar.svd(A, check=False)
+    U, d, V = svd(A, check=False)
     if d[0] == 0.0:
         return np.eye(2), d, np.eye(2)
     # (U, V) and (-U, -V) are the same decomposition: the smaller turn is taken.
@@ -118,7 +128,8 @@ def _steps(kind: str, U: np.ndarray, d: np.ndarray, V: np.ndarray) -> tuple[page
 def _orthogonal(Q: np.ndarray, angle: str = "") -> page.Step:
     """A rotation by its angle, or a reflection by the angle of its mirror."""
     if np.linalg.det(Q) > 0.0:
-        return page.Step(f"R_{angle}" if angle else "R", Q, "turn", np.eye(2), float(so2.log(Q)), angle)
+        turned = float(so2.log(Q, check=False))
+        return page.Step(f"R_{angle}" if angle else "R", Q, "turn", np.eye(2), turned, angle)
     mirror = 0.5 * np.arctan2(Q[1, 0], Q[0, 0])
     return page.Step("Q", Q, "flip", so2.exp(mirror), float(mirror), angle)
 

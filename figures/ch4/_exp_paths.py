@@ -1,5 +1,7 @@
 """The second plate of `exp_singularity`: two paths of rotations and their logarithms."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from lietool.figure import Drawing
@@ -19,7 +21,7 @@ LAST = 2.0 * FULL
 _AT = r"$360^{\circ}$"
 
 
-def drawing(turn: float, aside: float) -> Drawing:
+def drawing(turn: float, aside: float, log: Callable[[np.ndarray], np.ndarray]) -> Drawing:
     """R_x up to a full turn, then R_y: as it is, and moved aside by a rotation about z."""
     # Closest together at full turns, where the path passes I: beside it the logarithm moves fastest.
     turns, rest = np.divmod(np.linspace(0.0, LAST / FULL, 241), 1.0)
@@ -28,7 +30,8 @@ def drawing(turn: float, aside: float) -> Drawing:
     beside = so3.rotation("z", aside) @ through
     shown = max(int(np.searchsorted(steps, turn + 1e-9)), 1)
     starts = (np.zeros(3), np.array([0.0, 0.0, aside]))
-    lifts = [so3.log_along(p[:shown], start) for p, start in zip((through, beside), starts, strict=True)]
+    logs = log(np.stack([through, beside])[:, :shown])
+    lifts = [so3.log_along(so3.exp(x), start) for x, start in zip(logs, starts, strict=True)]
     lengths = np.array([np.linalg.norm(lift[-1]) for lift in lifts])
     x = np.linspace(0.0, 3.0 * FULL, 601)
     jacobian = so3.left_jacobian(np.stack([x, 0.0 * x, 0.0 * x], axis=-1))

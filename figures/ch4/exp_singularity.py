@@ -1,12 +1,13 @@
 """Figure 4.2 of the book and the paths of section 4.6."""
 
+from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
-from lietool.lie import quaternion, so3
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
+from lietool.lie import quaternion
 from lietool.render import scene, solids, style
 from lietool.render.camera import Camera
 from lietool.render.globe import joined, jumps
@@ -15,6 +16,9 @@ from lietool.render.theme import Color
 from . import _exp_paths, _heads
 
 FULL = 2.0 * np.pi
+Exp = Callable[[np.ndarray], np.ndarray]
+# Just inside the rim of the half sphere, where a rotation has one place.
+_INSIDE = np.pi * (1.0 - 1e-12)
 
 
 @figure(
@@ -69,6 +73,9 @@ def exp_singularity(
         float,
         Param("rotation about z that moves the second path off I", "deg", 1.0, 60.0, only=("view", "paths")),
     ] = 20.0,
+    *,
+    exp: Library = Library("lietool.lie.so3.exp"),
+    log: Library = Library("lietool.lie.so3.log"),
 ) -> Drawing:
     """The exponential map of SO(3) folds space: at |x| = 2n pi a whole sphere goes to the identity.
 
@@ -81,10 +88,10 @@ def exp_singularity(
     if view == "paths":
         if turn > 720.0:
             raise ValueError(f"the paths end at a turn of 720 degrees; got {turn:g}. Turn less")
-        return _exp_paths.drawing(np.deg2rad(turn), np.deg2rad(aside))
+        return _exp_paths.drawing(np.deg2rad(turn), np.deg2rad(aside), log)
     # As many shells as the turn needs: a marked point outside of them all would have nowhere to go.
     shells = max(shells, int(np.ceil(turn / 360.0)))
-    return _stages(_polar(np.deg2rad(turn), np.deg2rad(azimuth)), shells)
+    return _stages(_polar(np.deg2rad(turn), np.deg2rad(azimuth)), shells, exp)
 
 
 # In grey the pale orange and the pale green are one; on a disc they lie side by side.
@@ -110,10 +117,15 @@ def _to_chain(x: np.ndarray, shell: np.ndarray | int) -> np.ndarray:
     return np.where(shell % 2 == 1, -1.0, 1.0)[..., None] * _to_sphere(x) + along
 
 
-def _to_rotations(x: np.ndarray) -> np.ndarray:
-    """R = exp(hat x), drawn where its quaternion with non-negative real part lies."""
-    q = quaternion.from_matrix(so3.exp(x))
-    return _drawn(np.where(q[..., :1] < 0.0, -q, q))
+def _to_rotations(x: np.ndarray, exp: Exp) -> np.ndarray:
+    """R = exp(hat x), drawn where its quaternion with non-negative real part lies.
+
+    Of a wrong exponential, what is larger or smaller than a rotation lies off the sphere by so much.
+    """
+    R = exp(x)
+    q = quaternion.from_matrix(R, check=False)
+    size = np.linalg.norm(R, axis=(-2, -1)) / np.sqrt(3.0)
+    return size[..., None] * _drawn(np.where(q[..., :1] < 0.0, -q, q))
 
 
 def _shell(x: np.ndarray, shells: int) -> np.ndarray:
@@ -156,7 +168,7 @@ def _marked(trail: np.ndarray, name: str, offset: tuple[float, float], radius: f
     ]
 
 
-def _stages(x: np.ndarray, shells: int) -> Drawing:
+def _stages(x: np.ndarray, shells: int, exp: Exp) -> Drawing:
     trail = np.linspace(0.0, 1.0, 301)[:, None] * x
     direction = (0.16, -1.0, 0.45)
     plane = Camera((0.0, -1.0, 0.95), (0.0, -0.04, 0.0), 1.78)
@@ -167,14 +179,14 @@ def _stages(x: np.ndarray, shells: int) -> Drawing:
         ((0.0, 455.0, 600.0, 385.0), plane, _disc(trail, shells)),
         ((600.0, 475.0, 600.0, 385.0), chain, _beads(trail, shells, chain)),
         ((600.0, 5.0, 600.0, 385.0), sphere, _layers(trail, shells, sphere)),
-        ((0.0, 5.0, 600.0, 385.0), half, _half(trail, float(np.arctan2(x[1], x[0])), half)),
+        ((0.0, 5.0, 600.0, 385.0), half, _half(trail, float(np.arctan2(x[1], x[0])), half, exp)),
     )
     views = [scene.View(tuple(records), camera, box) for box, camera, records in panels]
     numbers = {
         "x": x,
         "shell": int(_shell(x, shells)) + 1,
         "quaternion": quaternion.exp(x / 2.0),
-        "rotation": so3.exp(x),
+        "rotation": exp(x),
         "collapsed_to": quaternion.exp(_polar(FULL * np.arange(1, shells + 1), 0.0) / 2.0),
     }
     return Drawing(scene.Picture((*views, scene.View(tuple(_captions())))), numbers)
@@ -249,12 +261,14 @@ def _layers(trail: np.ndarray, shells: int, camera: Camera) -> list[scene.Record
     return records + _marked(way[-1:], "$q$", _aside(way[-1], camera), 0.016)
 
 
-def _half(trail: np.ndarray, azimuth: float, camera: Camera) -> list[scene.Record]:
+def _half(trail: np.ndarray, azimuth: float, camera: Camera, exp: Exp) -> list[scene.Record]:
     grid = _grid(0)[:17]
     around = np.linspace(0.0, FULL, 181)
     rim = _to_sphere(_polar(np.pi, around))
-    lines = [_to_sphere(g) for g in _graticule(0)[:2]]
-    lines += [_to_sphere(_polar(np.linspace(0.0, np.pi, 17), k * np.pi / 6.0)) for k in range(12)]
+    flat = _graticule(0)[:2]
+    flat += [_polar(np.linspace(0.0, _INSIDE, 17), k * np.pi / 6.0) for k in range(12)]
+    curves = np.split(_to_rotations(np.concatenate(flat), exp), np.cumsum([len(g) for g in flat])[:-1])
+    lines = [piece for curve in curves for piece in np.split(curve, jumps(curve))]
     records: list[scene.Record] = [
         _surface(_to_sphere(grid), style.GLASS, "glass"),
         scene.Lines(joined(lines), style.GLASS_EDGE, style.HAIR, 0.6),
@@ -267,7 +281,7 @@ def _half(trail: np.ndarray, azimuth: float, camera: Camera) -> list[scene.Recor
         pair = _to_sphere(_polar([np.pi, -np.pi], azimuth + aside))
         records.append(scene.Lines(pair, color, style.THIN))
         records.append(scene.Points(pair, color, 8.0))
-    way = _to_rotations(trail)
+    way = _to_rotations(trail, exp)
     records += _passes(way, np.linalg.norm(trail, axis=-1))
     return records + _marked(way, "$R$", _aside(way[-1], camera), 0.016)
 

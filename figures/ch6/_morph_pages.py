@@ -141,7 +141,7 @@ def frames(pair: Shape, choice: _morph.Choice, forms: Forms, beside: str, steps:
     """Return a strip of frames, or two of them."""
     before, after = _rows(choice, beside)
     choices = [*before, choice, *after]
-    times = np.concatenate([np.linspace(0.0, t, steps + 1), np.linspace(t, 1.0, steps + 1)[1:]])
+    times = _morph_row.times(t, steps)
     both = "symmetric" in (choice.energy, beside)
     strips = []
     for asked in choices:

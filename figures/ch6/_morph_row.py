@@ -20,8 +20,8 @@ _REACH = 0.62
 # Of the curves that vertices follow: the first solid, the second dashed; and how pale they are ahead.
 _DASHES = (None, (7.0, 5.0))
 _AHEAD = 0.45
-# White between a triangle that is turned over and its ring; the smallest and the largest loupe.
-_RING, _LOUPE = 9.0, (52.0, 96.0)
+# White between a triangle that is turned over and its ring.
+_RING = 9.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +112,11 @@ def row(strip: Strip, there: Row, scale: float, size: tuple) -> list[scene.Recor
     return records
 
 
+def times(t: float, steps: int) -> Array:
+    """The times of a strip's columns: so many steps from 0 to t, and as many on to 1."""
+    return np.concatenate([np.linspace(0.0, t, steps + 1), np.linspace(t, 1.0, steps + 1)[1:]])
+
+
 def count(strip: Strip, k: int) -> tuple[str, str]:
     """How many triangles of a frame are turned over, and the colour in which that is said."""
     found = int(strip.frames.flipped[k].sum())
@@ -128,62 +133,22 @@ def moment(t: float) -> str:
     return f"$t = {number(t)}$"
 
 
-def rings(at: Plane, strip: Strip, k: int, few: float = marks.FEW) -> list[scene.Record]:
-    """Where few triangles (of all, such a part) are turned over, rings that show where."""
+def rings(at: Plane, strip: Strip, k: int, but: Array | None = None) -> list[scene.Record]:
+    """Where few triangles are turned over, rings that show where; none round those among `but`."""
     turned, V = strip.frames.flipped[k], strip.frames.vertices[k]
-    if not 0 < turned.sum() < few * len(turned):
+    if not 0 < turned.sum() < marks.FEW * len(turned):
         return []
     records: list[scene.Record] = []
     for some in marks.clusters(strip.way.pair, turned):
-        center, reach = marks.middle(V[strip.way.pair.faces[some]].reshape(-1, 2))
-        records.append(at.circle(center, reach + _RING / at.scale, style.WRONG, style.EDGE))
+        if but is None or not np.isin(some, but).all():
+            records.append(ring(at, V[strip.way.pair.faces[some]].reshape(-1, 2)))
     return records
 
 
-def loupe(
-    at: Plane,
-    strip: Strip,
-    k: int,
-    taken: Array,
-    box: tuple[float, float, float, float],
-    few: float = marks.FEW,
-) -> list[scene.Record]:
-    """A larger ring with the largest cluster that is turned over, and its neighbours, where there is room.
-
-    `taken` (n, 2) is what is drawn elsewhere on the page, in a box of which the ring must lie.
-    """
-    turned, V, faces = strip.frames.flipped[k], strip.frames.vertices[k], strip.way.pair.faces
-    if not 0 < turned.sum() < few * len(turned):
-        return []
-    some = max(marks.clusters(strip.way.pair, turned), key=len)
-    center, reach = marks.middle(V[faces[some]].reshape(-1, 2))
-    near = np.flatnonzero(np.isin(faces, faces[some]).any(axis=1))
-    middle, wide = marks.middle(V[faces[near]].reshape(-1, 2))
-    spot, free = marks.empty(taken, box)
-    radius = min(free - 12.0, _LOUPE[1])
-    larger = 0.9 * radius / wide
-    if radius < _LOUPE[0] or larger < 2.0 * at.scale:
-        return []
-    glass = Plane((spot[0] - larger * middle[0], spot[1] - larger * middle[1]), larger)
-    inside = near[~turned[near]]
-    records: list[scene.Record] = []
-    around = reach + _RING / at.scale
-    start = at.at(center)[:2]
-    link = np.array(spot) - start
-    length = float(np.linalg.norm(link))
-    if length > radius + around * at.scale:
-        line = start + np.outer([around * at.scale / length, 1.0 - radius / length], link)
-        records.append(scene.Lines(np.pad(line, ((0, 0), (0, 1))), style.WRONG, style.THIN))
-    corners, over = (glass.at(V[faces[f]])[:, [0, 1, 2, 0]] for f in (inside, near[turned[near]]))
-    tone = marks.color_at(float(strip.frames.t[k]))
-    records += [
-        scene.Surface(glass.at(V), faces[inside], tone, material="flat"),
-        scene.Lines(marks.broken(corners), style.INK, style.HAIR),
-        scene.Surface(glass.at(V), faces[near[turned[near]]], style.WRONG, material="flat", alpha=0.85),
-        scene.Lines(marks.broken(over), style.WRONG, style.EDGE),
-        Plane((0.0, 0.0), 1.0).circle(spot, radius, style.WRONG, style.EDGE),
-    ]
-    return records
+def ring(at: Plane, points: Array, tone: str = style.WRONG) -> scene.Lines:
+    """A ring round points (n, 2)."""
+    center, reach = marks.middle(points)
+    return at.circle(center, reach + _RING / at.scale, tone, style.EDGE)
 
 
 def loci(at: Plane, way: _morph.Way, t: float) -> list[scene.Record]:

@@ -5,9 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from lietool.render import scene, style
+from lietool.render.camera import Box
+from lietool.render.plane import Plane
 
-from . import _morph, _morph_plots
-from ._morph_row import LEFT, RIGHT, Row, Strip, count, frame, loupe, moment, place, rings, row, text, window
+from . import _morph, _morph_loupe, _morph_plots
+from ._morph_row import LEFT, RIGHT, Row, Strip, count, frame, moment, place, rings, row, text, window
 
 Array = np.ndarray
 
@@ -50,15 +52,15 @@ def _alone(strip: Strip, t: float, other: _morph.Way | None) -> scene.Picture:
     high = min(_HIGHEST, _LOWEST + 0.5 * spare)
     gap = 0.5 * (spare - (high - _LOWEST))
     top = _TITLE - _UNDER_TITLE - 0.6 * gap - (_LINE if drop else 0.0)
-    taken = [np.empty((0, 2))]
-    planes = []
+
+    def at(k: int, now: float) -> Plane:
+        middle = top - drop * (k % 2) - 0.5 * scale * tall
+        return place(strip.way, now, LEFT + (k + 0.5) * pitch, middle, scale, size)
+
     for k, now in enumerate(strip.frames.t.tolist()):
         down = drop * (k % 2)
         x = LEFT + (k + 0.5) * pitch
-        at = place(strip.way, now, x, top - down - 0.5 * scale * tall, scale, size)
-        records += frame(strip, k, at)
-        planes.append(at)
-        taken.append(at.at(strip.frames.vertices[k])[:, :2])
+        records += frame(strip, k, at(k, now))
         said, tone = count(strip, k)
         if drop:
             y = top - down - scale * tall - 34.0 if k % 2 else top + 14.0
@@ -68,23 +70,20 @@ def _alone(strip: Strip, t: float, other: _morph.Way | None) -> scene.Picture:
             y = top - scale * tall - 34.0
             records += [text(moment(now), x, y), text(said, x, y - _LINE, tone)]
     if not drop:
-        records += _enlarged(strip, planes, np.concatenate(taken), (LEFT, top - scale * tall, tall * scale))
+        records += _enlarged(strip, at, (LEFT, top - scale * tall, RIGHT - LEFT, tall * scale))
     records += _morph_plots.draw([strip], other, t, low, high)
     if other is not None:
         records += _legend(strip, other)
     return scene.Picture((scene.View(tuple(records)),))
 
 
-def _enlarged(
-    strip: Strip, planes: list, taken: Array, box: tuple[float, float, float]
-) -> list[scene.Record]:
-    """Rings at the few triangles that are turned over, and those of one frame larger."""
+def _enlarged(strip: Strip, at: _morph_loupe.Place, box: Box) -> list[scene.Record]:
+    """Rings at the few triangles that are turned over, and those of one column larger."""
+    loupe = _morph_loupe.found(strip, at, box)
     records: list[scene.Record] = []
-    for k, at in enumerate(planes):
-        records += rings(at, strip, k)
-    turned = strip.frames.flipped.sum(axis=1)
-    k = int(np.argmax(turned))
-    return records + loupe(planes[k], strip, k, taken, (box[0], box[1], RIGHT - box[0], box[2]))
+    for k, now in enumerate(strip.frames.t.tolist()):
+        records += rings(at(k, now), strip, k, loupe.some if loupe and loupe.k == k else None)
+    return records + (_morph_loupe.draw(loupe, strip, at) if loupe else [])
 
 
 def _staggered(pitch: float, wide: float, tall: float, free: float) -> tuple[float, float]:

@@ -1,5 +1,6 @@
 """A shape in its cage, how the cage is posed, and where the shape is then."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 
@@ -102,7 +103,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Choice:
-    """How the shape follows its cage; as the parameters of the command say."""
+    """How the shape follows its cage, as the parameters of the command say; and what computes the maps."""
 
     coordinates: str = "maps"
     by: str = "faces"
@@ -111,6 +112,8 @@ class Choice:
     power: float = cage_weights.POWER
     ramp: float = cage_weights.RAMP
     world: bool = False
+    tetrahedra: Callable[[cage_frames.Elements, Array], Array] = cage_frames.tetrahedra
+    maps: cage_.Maps = cage_frames.maps
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +188,7 @@ def _by_maps(case: Case, choice: Choice, at: tuple[float, float, float], now: Ar
         pose = cage_.follow(bound, _sequence(case, at), policy).poses[-1]
     else:
         lift = None if choice.turns == "principal" else adjacency.consistent
-        pose = cage_.pose(bound, now, way, policy, lift)
+        pose = cage_.pose(bound, now, way, policy, lift, choice.maps)
     moved, notes = cage_.moved(bound, pose), []
     if pose.replaced.any():
         k = int(np.argmax(pose.replaced))

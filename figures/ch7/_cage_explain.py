@@ -46,8 +46,8 @@ def explain(
     """The cage, the tetrahedron of one element, and its map in numbers and as a frame."""
     kind = case_.elements(case, choice)
     now = case.posed(*at)
-    T = np.stack([cage_frames.tetrahedra(kind, V)[shown] for V in (case.vertices, now)])
-    A = cage_frames.maps(cage_frames.rest(kind, case.vertices), now)[shown]
+    T = np.stack([choice.tetrahedra(kind, V)[shown] for V in (case.vertices, now)])
+    A = choice.maps(cage_frames.rest(kind, case.vertices), now)[shown]
     moved = case_.move(case, choice, *at, shown)
     views = _whole(case, look, kind, moved, shown)
     aside = look.turned(_ROUND, _ABOVE)

@@ -1,6 +1,6 @@
 """The page of figure 7.1: the three steps of phi above, the three parameters below."""
 
-from dataclasses import replace
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -8,18 +8,16 @@ from lietool.render import letter as shape
 from lietool.render import marks, mesh_look, scene, solids, style
 from lietool.render.camera import Camera, around
 from lietool.render.globe import globe, joined
-from lietool.render.mesh_page import each, legend, titles
+from lietool.render.mesh_page import each
 from lietool.render.plot import number
 
+from . import _parametrise_words as words
 from ._parametrise_shown import NOTHING, Shown
 
 _DIRECTION = (1.0, 0.5, 0.34)
 _COLUMNS = ((196.0, 240.0), (446.0, 340.0), (780.0, 396.0))
 _UPPER = tuple((x, 458.0, w, 366.0) for x, w in _COLUMNS)
 _LOWER = tuple((x, 164.0, w, 284.0) for x, w in _COLUMNS)
-# The lines of titles, and of the numbers under the columns.
-_TITLES, _NUMBERS = 836.0, (134.0, 98.0)
-_SIDE, _ROWS = 104.0, (640.0, 290.0)
 _BALL, _SMALL = np.pi, style.SMALL_TEXT
 # Half of the axis of rotation, in heights of the letter; the axes of space beside l; where its ball has pi.
 _AXIS, _SPACE, _RIM = 0.95, 0.9, 0
@@ -32,21 +30,47 @@ _LETTERS = {
 }
 
 
-def picture(s: Shown) -> scene.Picture:
-    """Return the page."""
-    views = [*_steps(s), *_parameters(s), scene.View((*_texts(s), *_maps(s)))]
-    return scene.Picture(tuple(views))
+def pictures(shown: Sequence[Shown]) -> list[scene.Picture]:
+    """Return a page for each of some parameters, such as the moments of a film, all seen in one way."""
+    upper, lower = _upper(shown), _lower(shown)
+    pages = []
+    for s in shown:
+        said = scene.View((*words.texts(s, _UPPER, _LOWER), *words.maps(s)))
+        pages.append(scene.Picture((*_steps(s, upper), *_parameters(s, lower), said)))
+    return pages
 
 
-def _steps(s: Shown) -> list[scene.View]:
-    """The letter before and after each step, all in one scale."""
+def _upper(shown: Sequence[Shown]) -> list[Camera]:
+    """The cameras of the three steps, all in one scale."""
     corners = shape.solid()[0]
-    seen = [
-        [corners, corners @ s.S.T],
-        [corners @ s.S.T, corners @ (s.R @ s.S).T, *_ends(s), _reach(s)],
-        [corners @ (s.R @ s.S).T, corners @ s.A[:3, :3].T + s.d, s.way, s.shift[None]],
+    seen: list[list[np.ndarray]] = [[], [], []]
+    for s in shown:
+        seen[0] += [corners, corners @ s.S.T]
+        seen[1] += [corners @ s.S.T, corners @ (s.R @ s.S).T, *_ends(s), _reach(s)]
+        seen[2] += [corners @ (s.R @ s.S).T, corners @ s.A[:3, :3].T + s.d, s.way, s.shift[None]]
+    return each([np.concatenate(points) for points in seen], _DIRECTION, _UPPER, 1.1)
+
+
+def _lower(shown: Sequence[Shown]) -> list[Camera]:
+    """The cameras of the three parameters."""
+    seen: list[list[np.ndarray]] = [
+        [],
+        [_BALL * np.eye(3), -_BALL * np.eye(3)],
+        [np.zeros((1, 3)), _SPACE * np.eye(3)],
     ]
-    cameras = each([np.concatenate(points) for points in seen], _DIRECTION, _UPPER, 1.1)
+    for s in shown:
+        factor = max(float(np.exp(s.logs.max())), 1.0)
+        seen[0] += [factor * s.Q.T, -factor * s.Q.T, np.eye(3), -np.eye(3)]
+        seen[1] += [s.x[None], s.back_x[None]]
+        seen[2] += [s.shift[None], s.back_shift[None]]
+    return [
+        around(np.concatenate(points), _DIRECTION, box, 1.22)
+        for points, box in zip(seen, _LOWER, strict=True)
+    ]
+
+
+def _steps(s: Shown, cameras: Sequence[Camera]) -> list[scene.View]:
+    """The letter before and after each step."""
     zero, one = np.zeros(3), np.eye(3)
     records = [
         [*_ghost(one, zero), *_letter(s.S, zero, "between")],
@@ -150,19 +174,14 @@ def _moved(s: Shown, camera: Camera) -> list[scene.Record]:
     return records
 
 
-def _parameters(s: Shown) -> list[scene.View]:
+def _parameters(s: Shown, cameras: Sequence[Camera]) -> list[scene.View]:
     """The three parameters."""
-    factor = max(float(np.exp(s.logs.max())), 1.0)
-    seen = (
-        [factor * s.Q.T, -factor * s.Q.T, np.eye(3), -np.eye(3)],
-        [_BALL * np.eye(3), -_BALL * np.eye(3), s.x[None], s.back_x[None]],
-        [np.zeros((1, 3)), s.shift[None], s.back_shift[None], _SPACE * np.eye(3)],
-    )
-    views = []
-    for points, build, box in zip(seen, (_stretch, _vector, _translation), _LOWER, strict=True):
-        camera = around(np.concatenate(points), _DIRECTION, box, 1.22)
-        views += [scene.View(tuple(records), camera, box) for records in build(s, camera)]
-    return views
+    built = zip((_stretch, _vector, _translation), cameras, _LOWER, strict=True)
+    return [
+        scene.View(tuple(records), camera, box)
+        for build, camera, box in built
+        for records in build(s, camera)
+    ]
 
 
 def _stretch(s: Shown, camera: Camera) -> list[list[scene.Record]]:
@@ -185,7 +204,7 @@ def _stretch(s: Shown, camera: Camera) -> list[list[scene.Record]]:
         # A name stands at the nearer end of its axis.
         near = q if q @ camera.axes[2] >= 0.0 else -q
         end = max(float(np.exp(log)), 1.0) * near
-        text = f"${_signed(float(log))}$"
+        text = f"${words.signed(float(log))}$"
         over.append(
             marks.beyond(text, end, near, camera, color=style.ALGEBRA_TEXT, size=_SMALL, gap=34.0, room=60.0)
         )
@@ -237,84 +256,3 @@ def _answered(v: np.ndarray, given: np.ndarray, name: str, camera: Camera) -> li
         scene.Points([v], style.MARK, 8.0),
         scene.Label(name, v, style.MARK, style.TEXT, (32.0, 6.0), room=40.0),
     ]
-
-
-def _maps(s: Shown) -> list[scene.Record]:
-    """Between both rows, phi upwards and psi downwards."""
-    low, high = _ROWS[1] + 74.0, _ROWS[0] - 60.0
-    records: list[scene.Record] = []
-    for x, start, stop, name, side in ((-12.0, low, high, s.symbol, -40.0), (16.0, high, low, r"\psi", 28.0)):
-        at = _SIDE + x
-        records.append(scene.Arrow((at, start, 0), (at, stop, 0), style.INK, 2.2, 3.4))
-        records.append(
-            scene.Label(f"${name}$", (at, (low + high) / 2.0, 0), style.INK, style.TITLE_TEXT, (side, 0.0))
-        )
-    return records
-
-
-def _texts(s: Shown) -> list[scene.Record]:
-    last = r"$\mathbf{d} = J(\mathbf{x})\,\mathbf{l}$" if s.map == "phi_se" else r"$+\ \mathbf{l}$"
-    heads = (r"$S = \exp(Y)$", r"$R = \exp(X)$", last)
-    space = (r"$\mathfrak{se}(3)$", r"$\times\,\mathfrak{sym}(3)$")
-    if s.map == "phi_so":
-        space = (r"$\mathfrak{so}(3)$", r"$\times\ \mathrm{\mathbb{R}}^3$", r"$\times\,\mathfrak{sym}(3)$")
-    names = [
-        scene.Label(text, (_SIDE, _ROWS[1] + 24.0 - 48.0 * k, 0), style.INK, style.TEXT)
-        for k, text in enumerate(space)
-    ]
-    labels = [
-        *(
-            replace(title, position=(np.asarray(title.position)[0], _TITLES, 0.0))
-            for title in titles(_UPPER, heads)
-        ),
-        scene.Label(r"$\mathrm{Aff}^{+}\!(3)$", (_SIDE, _ROWS[0], 0), style.INK, style.TEXT),
-        *names,
-    ]
-    for box, texts in zip(_LOWER, _below(s), strict=True):
-        for k, text in enumerate(texts):
-            at = (box[0] + box[2] / 2.0, _NUMBERS[k], 0.0)
-            labels.append(scene.Label(text, at, style.INK if k == 0 else style.MARK, _SMALL, anchor="cn"))
-    return [*labels, legend(_legend(s))]
-
-
-def _below(s: Shown) -> tuple[tuple[str, ...], ...]:
-    """The lines under each column: what is given, and what psi answers where that is another."""
-    stretch = [r"$\mathrm{eigenvalues\ of}\ Y$"]
-    if not np.allclose(s.back_logs, np.sort(s.logs), atol=NOTHING):
-        stretch.append(rf"$Y':\ {_triple(s.back_logs[::-1])}$")
-    degrees = [rf"${_turned(s.x, '')}$"]
-    moved = [rf"$\mathbf{{l}} = ({_triple(s.shift)})$"]
-    if not s.same:
-        degrees.append(rf"${_turned(s.back_x, chr(39))}$")
-        if np.linalg.norm(s.back_shift - s.shift) > NOTHING:
-            moved.append(rf"$\mathbf{{l}}' = ({_triple(s.back_shift)})$")
-    return tuple(stretch), tuple(degrees), tuple(moved)
-
-
-def _turned(x: np.ndarray, mark: str) -> str:
-    return rf"|\mathbf{{x}}{mark}| = {number(np.degrees(np.linalg.norm(x)), 1)}^{{\circ}}"
-
-
-def _triple(v: np.ndarray) -> str:
-    return r",\ ".join(_signed(float(x), plus="") for x in v)
-
-
-def _legend(s: Shown) -> str:
-    whole = (
-        r"\hat{A} = \exp(\hat{X})\,\iota(\exp Y)"
-        if s.map == "phi_se"
-        else r"\hat{A}\,\mathbf{p} = R S\,\mathbf{p} + \mathbf{l}"
-    )
-    back = r"(\mathbf{x}, \mathbf{l}, Y)"
-    if not s.returns:
-        back = rf"(\mathbf{{x}}', \mathbf{{l}}', Y'),\ \ {s.symbol}(\psi(\hat{{A}})) \neq \hat{{A}}"
-    elif not s.same:
-        moved = r"\mathbf{l}'" if np.linalg.norm(s.back_shift - s.shift) > NOTHING else r"\mathbf{l}"
-        back = rf"(\mathbf{{x}}', {moved}, Y),\ \ {s.symbol}(\psi(\hat{{A}})) = \hat{{A}}"
-    return rf"${whole}$,   $\psi(\hat{{A}}) = {back}$"
-
-
-def _signed(value: float, plus: str = "+") -> str:
-    """A number with two decimals and its sign."""
-    text = f"{round(value, 2) + 0.0:.2f}"
-    return "{-}" + text[1:] if text[0] == "-" else (plus if float(text) else "") + text

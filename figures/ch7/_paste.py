@@ -1,5 +1,6 @@
 """An image pasted into another: what is pasted where, the edit, and what it is measured by."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -116,7 +117,7 @@ def _pairs(inside: Mask, axis: int) -> Mask:
     return one | other
 
 
-def edit(given: Paste, mixed: bool) -> Edit:
+def edit(given: Paste, mixed: bool, solve: Callable[..., image.Result] = image.solve) -> Edit:
     """Return the edit: inside the gradient is to be the source's, or the stronger of both."""
     inner, outer = image.gradient(given.laid), image.gradient(given.target)
     if mixed:
@@ -126,6 +127,6 @@ def edit(given: Paste, mixed: bool) -> Edit:
         for axis, one, other in zip((1, 0), inner, outer, strict=True)
     )
     field = x, y
-    result = image.solve(image.prepare(given.inside), given.target, field)
+    result = solve(image.prepare(given.inside), given.target, field)
     copy = np.where(given.inside[..., None], given.laid, given.target)
     return Edit(given, field, result, copy)

@@ -56,7 +56,8 @@ class Case:
     """A mesh, which of its vertices are pinned and which are handles, and what these do.
 
     `painted` are weights (n, k) in place of computed ones; `notes` what is to be said of the mesh; `close`
-    the vertices that are seen close by where results are compared, all if there are none.
+    the vertices that are seen close by where results are compared, all if there are none.  `join` puts
+    the faces together again.
     """
 
     name: str
@@ -70,6 +71,7 @@ class Case:
     notes: tuple[str, ...] = ()
     close: Index | None = None
     kept: dict[str, tuple[poisson.Prepared, Array]] = field(default_factory=dict)
+    join: poisson.Join = poisson.join
 
     @cached_property
     def sets(self) -> list[Index]:
@@ -124,7 +126,8 @@ class Case:
     def solve(self, kind: str, way: ways.Way, t: float) -> poisson.Result:
         """Return the edit by a way of blending with weights of a kind, on a part of the way."""
         A, turns = self.motions.at(t)
-        return poisson.solve(self.prepared(kind), A, way, turns=turns if way.whole_turns else None)
+        given = turns if way.whole_turns else None
+        return poisson.solve(self.prepared(kind), A, way, turns=given, joined=self.join)
 
 
 @dataclass(frozen=True)

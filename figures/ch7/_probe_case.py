@@ -1,6 +1,6 @@
 """A shape with its probes, the weights at its points, and where it is at a time."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -13,7 +13,7 @@ from lietool.lie import polar, so3
 from lietool.mesh.surface import Mesh
 
 from ._probe_look import Look
-from ._probe_weights import PARTS, weigh
+from ._probe_weights import PARTS, Shepard, weigh
 from ._probe_weights import Recipe as Recipe
 
 Array = NDArray[np.float64]
@@ -25,7 +25,8 @@ WAYS = {name.replace("_", "-"): way for name, way in ways.WAYS.items()}
 class Case:
     """A shape and its probes, as they are when nothing is said of how to blend.
 
-    `parts` are recipes for those of `PARTS` whose weights are others than the rest's.
+    `parts` are recipes for those of `PARTS` whose weights are others than the rest's.  `shepard` weighs by
+    straight distances, and `solve` moves the points.
     """
 
     name: str
@@ -37,6 +38,8 @@ class Case:
     poses: Poses | None = None
     parts: Mapping[str, Recipe] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    shepard: Shepard = weights.shepard
+    solve: Callable[[move.Prepared, move.Pose], move.Moved] = move.solve
 
     @cached_property
     def recipes(self) -> tuple[Recipe, ...]:
@@ -51,7 +54,7 @@ class Case:
         made: list[Array] = []
         for k, recipe in enumerate(recipes):
             first = next(j for j in range(k + 1) if recipes[j] is recipe)
-            made.append(made[first] if first < k else weigh(self.mesh, self.probes, recipe))
+            made.append(made[first] if first < k else weigh(self.mesh, self.probes, recipe, self.shepard))
         return weights.separate(*made) if self.parts else made[0]
 
     @property
@@ -158,7 +161,7 @@ class Moving:
         frames, vectors = self.frames(t)
         B = probe.motions(self._prepared, frames)
         pose = move.encode(self.way, B, vectors if self.way.whole_turns else None)
-        moved = move.solve(self._prepared.anchored, pose)
+        moved = self.case.solve(self._prepared.anchored, pose)
         return Moment(moved.points, frames, vectors, moved.fallback)
 
     @property

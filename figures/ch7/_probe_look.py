@@ -9,16 +9,13 @@ from numpy.typing import NDArray
 from lietool.mesh import cut, solids
 from lietool.mesh.surface import Mesh
 from lietool.render import mesh_lines, mesh_look, style
-from lietool.render.camera import Camera
+from lietool.render.camera import STAND, Camera
 from lietool.render.scene import Record
 from lietool.render.theme import Color
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Direction = tuple[float, float, float]
-
-# From the file's y upwards to z upwards.
-_STAND = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +67,8 @@ def own(mesh: Mesh, before: Color = style.BEFORE) -> tuple[Color, Color]:
     """Return the colours of a user's shape at rest and moved: its own where its vertices have them."""
     if mesh.colours is None:
         return before, style.AFTER
-    levels = np.clip(mesh.colours[:, :3], 0.0, 1.0)
-    light = np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
-    rgba = np.column_stack([light, np.ones(len(light))])
-    return rgba, rgba
+    colors = mesh_look.vertex_colors(mesh.colours)
+    return colors, colors
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,9 +112,9 @@ class Look:
             return x
         if x.shape[-2:] == (4, 4):
             stood = x.copy()
-            stood[..., :3, :] = _STAND @ x[..., :3, :]
+            stood[..., :3, :] = STAND @ x[..., :3, :]
             return stood
-        return x @ _STAND.T
+        return x @ STAND.T
 
     def body(
         self, V: Array, F: Index, camera: Camera, stage: float, ground: float | None = None

@@ -1,6 +1,6 @@
 """Weights of probes at the points of a shape: by distance, harmonic on the surface, or painted."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,6 +14,7 @@ from lietool.mesh.surface import Mesh
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
+Shepard = Callable[[Array, Array, float], Array]
 
 DISTANCES = ("inverse-distance", "cutoff", "gaussian")
 SMOOTH = ("harmonic", "biharmonic")
@@ -79,8 +80,8 @@ class Recipe:
         return f"weights $w_i = {self.short[1:]}{after}; $r_i$: distance to probe $i${along}"
 
 
-def weigh(mesh: Mesh, probes: Probes, recipe: Recipe) -> Array:
-    """Return weights (n, k) of probes at the vertices of a mesh."""
+def weigh(mesh: Mesh, probes: Probes, recipe: Recipe, shepard: Shepard = weights.shepard) -> Array:
+    """Return weights (n, k) of probes at the vertices of a mesh, by a function where they are Shepard's."""
     V, centres = mesh.vertices, probes.rest[:, :3, 3]
     if recipe.kind == "none":
         return np.zeros((len(V), len(centres)))
@@ -88,6 +89,8 @@ def weigh(mesh: Mesh, probes: Probes, recipe: Recipe) -> Array:
         return recipe.values
     if recipe.kind in SMOOTH:
         return _smooth(mesh, probes, recipe)
+    if (recipe.kind, recipe.of_sum, recipe.distance) == ("inverse-distance", "unity", "straight"):
+        return shepard(V, centres, recipe.power)
     r = _along(mesh, centres) if recipe.distance == "surface" else weights.distances(V, centres)
     if recipe.kind == "inverse-distance":
         w = weights.inverse_distance(r, recipe.power)

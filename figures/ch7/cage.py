@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 
 from . import _cage_case as case_
 from . import _cage_examples as examples
@@ -158,6 +158,9 @@ def cage(
             needs="shape",
         ),
     ] = 0.02,
+    *,
+    tetrahedra: Library = Library("lietool.deform.cage_frames.tetrahedra"),
+    maps: Library = Library("lietool.deform.cage_frames.maps"),
 ) -> Drawing:
     """A shape moved by a cage around it: every face of the cage has an affine map, and points blend them.
 
@@ -179,7 +182,7 @@ def cage(
     else:
         case = own.case(shape, cage, to, faces, margin)
     look = replace(case.look.turned(around, above), y_up=up == "y")
-    choice = case_.Choice(coordinates, by, way, turns, power, ramp, origin == "world")
+    choice = case_.Choice(coordinates, by, way, turns, power, ramp, origin == "world", tetrahedra, maps)
     at = (t, bend, twist)
     if view == "compare":
         drawing = pages.compare(case, choice, look, at)

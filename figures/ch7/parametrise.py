@@ -1,21 +1,20 @@
 """Figure 7.1 of the book."""
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 import numpy as np
 
 from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 from lietool.lie import affine, so3
+from lietool.render.scene import Picture
 
 from . import _parametrise_page as page
-from ._parametrise_shown import Shown, parts, unit
+from ._parametrise_shown import EXACT, Shown, of_rigid, shown, unit
 
 Vector = tuple[float, float, float]
-
-# An angle, radians, or a translation that differs by less is the same; how far off psi may be at most.
-_SAME, _EXACT = 1e-9, 1e-12
 _PHI_SE, _PSI_SE = Library("lietool.lie.affine.phi_se"), Library("lietool.lie.affine.psi_se")
-_UPPER = np.triu_indices(3)
+_EXP, _LOG = Library("lietool.lie.se3.exp"), Library("lietool.lie.se3.log")
 
 
 @figure(
@@ -68,6 +67,8 @@ def parametrise(
     *,
     phi_se: Library = _PHI_SE,
     psi_se: Library = _PSI_SE,
+    exp: Library = _EXP,
+    log: Library = _LOG,
 ) -> Drawing:
     """Parametrise: an affine transformation as rotation vector, translation and log-stretch, and back.
 
@@ -78,30 +79,28 @@ def parametrise(
     another one, inside of the ball.
     """
     u = unit("axis", axis)
-    x, shift, factors = np.radians(angle) * u, np.array(translation), np.array(stretch)
-    Q = so3.rotation("x", np.radians(tilt))
-    Y = (Q * np.log(factors)) @ Q.T
-    given = np.concatenate([x, shift, Y[_UPPER]])
-    phi, psi = (phi_se, psi_se) if map == "phi_se" else (affine.phi_so, affine.psi_so)
-    A = phi(given)
-    back = psi(A)
-    error = float(np.abs(phi(back) - A).max())
-    same = bool(np.abs(back - given).max() < _SAME * max(1.0, float(np.abs(given).max())))
-    S, R, way = parts(phi, given)
-    returns = error <= _EXACT
-    Z = np.zeros((3, 3))
-    Z[_UPPER] = back[6:]
-    logs = np.linalg.eigvalsh(Z, UPLO="U")
-    shown = Shown(map, x, shift, Q, np.log(factors), A, S, R, way, back[:3], back[3:6], logs, same, returns)
+    Q, logs = so3.rotation("x", np.radians(tilt)), np.log(np.array(stretch))
+    phi, psi = affine.phi_so, affine.psi_so
+    if map == "phi_se":
+        # It has exp and log of rigid motions in it, which may be others too.
+        phi, psi = (phi_se, psi_se) if exp is _EXP and log is _LOG else of_rigid(exp, log)
+
+    def at(degrees: float) -> Shown:
+        return shown(map, np.radians(degrees) * u, np.array(translation), Q, logs, phi, psi)
+
+    def film(angles: Sequence[float]) -> list[Picture]:
+        return page.pictures([at(degrees) for degrees in angles])
+
+    now = at(angle)
     numbers = {
-        "parameters": given,
-        "A": A,
-        "R": R,
-        "S": S,
-        "d": A[:3, 3],
-        "log_stretch": np.log(factors),
-        "principal": back,
-        "same": same,
-        "round_trip_below": _EXACT if returns else error,
+        "parameters": now.given,
+        "A": now.A,
+        "R": now.R,
+        "S": now.S,
+        "d": now.d,
+        "log_stretch": now.logs,
+        "principal": now.back,
+        "same": now.same,
+        "round_trip_below": EXACT if now.returns else now.off,
     }
-    return Drawing(page.picture(shown), numbers)
+    return Drawing(page.pictures([now])[0], numbers, film=film)

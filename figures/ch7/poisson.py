@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 
 from . import _poisson_examples as examples
 from . import _poisson_own as own
@@ -118,6 +118,8 @@ def poisson(
             "weights of the handles at the vertices: columns in a .txt or .csv, or painted on a ply, obj, glb"
         ),
     ] = None,
+    *,
+    join: Library = Library("lietool.deform.poisson.join"),
 ) -> Drawing:
     """A mesh whose pinned vertices stay while handles are dragged, by Poisson's equation.
 
@@ -147,7 +149,8 @@ def poisson(
     given = own.case(mesh, handles, paint)
 
     def looked(found: examples.Case) -> examples.Case:
-        return replace(found, look=replace(found.look.turned(around, above), y_up=up == "y"))
+        look = replace(found.look.turned(around, above), y_up=up == "y")
+        return replace(found, look=look, join=join)
 
     if example == "handles":
         return pages.handles(looked(given or examples.by_head()), weights, way, t)

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 from lietool.render import raster, scene, style
 from lietool.render.camera import Box
 from lietool.render.mesh_lines import level_lines
@@ -65,6 +65,8 @@ def poisson_image(
             positional=3,
         ),
     ] = None,
+    *,
+    solve: Library = Library("lietool.deform.image.solve"),
 ) -> Drawing:
     """One image pasted into another by its gradient: the solution of Poisson's equation has no seam.
 
@@ -73,7 +75,8 @@ def poisson_image(
     edge from the target: the error in the colours is spread over the whole inside,
     where nobody sees it, and so the balloon itself changes its colours.
     """
-    made = _paste.edit(_paste.paste(source, target, mask, across, down), gradients == "mixed")
+    given = _paste.paste(source, target, mask, across, down)
+    made = _paste.edit(given, gradients == "mixed", solve)
     picture = _alone(made) if view == "result" else _story(made)
     return Drawing(picture, _numbers(made))
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
-from lietool.figure import Drawing, Param, Plate, Time, figure
+from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 
 from . import _probe_examples as example_
 from . import _probe_own as own
@@ -217,6 +217,9 @@ def probe(
             "weights of the probes at the points: columns in a .txt or .csv, or painted on a ply, obj, glb"
         ),
     ] = None,
+    *,
+    shepard: Library = Library("lietool.deform.weights.shepard"),
+    solve: Library = Library("lietool.deform.move.solve"),
 ) -> Drawing:
     """A shape moved by probes: frames that take the points around them along, each by its weight.
 
@@ -278,6 +281,7 @@ def probe(
     Painted ones are kind = "painted", file = "w.csv", a column for each probe.
     """
     case = example_.example(example, turn) if shape is None else own.shape(shape, turn)
+    case = replace(case, shepard=shepard, solve=solve)
     case = own.poses(own.probes(case, probes, probe, turn), poses)
     recipe = None if weights == "auto" else Recipe(weights, power, reach, sum, distance, hold, loose)
     words = (rotation_weights, translation_weights, stretch_weights)

@@ -235,7 +235,7 @@ def alone(family: Family, way: str, full: Array, grown: float) -> Drawing:
     box = (60.0, 60.0, 1080.0, 780.0)
     shapes = [family.rest, *family.targets, family.blended(way, full).vertices]
     camera = _camera(shapes, family, box)
-    records = look.creature(family, made.vertices, camera, *look.RESULT)
+    records = look.creature(family, made.vertices, camera, *look.own(family, 0, look.RESULT))
     records += look.hatched(family, made.vertices, made.fallback, camera, box)
     title = look.line(
         rf"$\mathbf{{w}} = ({look.numbers(weights)})$" if len(weights) <= 6 else "blended", 600.0, 40.0

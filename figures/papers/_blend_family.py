@@ -10,7 +10,7 @@ import numpy as np
 from lietool.deform import shape_blend, ways
 from lietool.mesh import cut as cutting
 from lietool.mesh import laplacian, solids, surface, surface_io
-from lietool.render import style
+from lietool.render import mesh_look, style
 
 Array = np.ndarray
 
@@ -63,6 +63,8 @@ class Family:
         The linear maps of the faces, where they are known; else those with the normals.
     thorn : Thorn, optional
         How the targets are made, if they are a thorn's.
+    painted : tuple of ndarray, shape (n, 4)
+        Colours of the rest's and then the targets' own, None for one that has none; or nothing.
     """
 
     names: tuple[str, ...]
@@ -79,6 +81,7 @@ class Family:
     cut: cutting.Cut | None = None
     maps: Array | None = None
     thorn: Thorn | None = None
+    painted: tuple[Array | None, ...] = ()
     _prepared: dict[str, shape_blend.Prepared] = field(default_factory=dict)
 
     def __len__(self) -> int:
@@ -220,7 +223,15 @@ def _read(files: tuple[Path, ...], stamps: tuple[tuple[int, int], ...], up: str)
         place,
         (1.0, -0.9, 0.35),
         up=up,
+        painted=tuple(_painted(mesh, place) for mesh in meshes),
     )
+
+
+def _painted(mesh: surface.Mesh, place: Array) -> Array | None:
+    """The colours of a mesh at places, of which each has those of its first vertex."""
+    if mesh.colours is None:
+        return None
+    return mesh_look.vertex_colors(mesh.colours[np.unique(place, return_index=True)[1]])
 
 
 def _welded(V: Array) -> tuple[Array, Array]:

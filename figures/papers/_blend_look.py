@@ -35,6 +35,12 @@ def target(k: int) -> tuple[str, str, str]:
     return tone(k), style.BETWEEN, _EDGES[k] if k < len(_EDGES) else style.INK
 
 
+def own(family: Family, k: int, tones: tuple[str, str, str]) -> tuple[Color, str, str]:
+    """The same colours, with a fill of its own where the file of the rest, 0, or of target k has such."""
+    painted = family.painted[k] if family.painted else None
+    return tones[0] if painted is None else painted, tones[1], tones[2]
+
+
 def mixed(weights: Array, count: int) -> Color:
     """The colour of a mixture, at each of some vertices: of the targets', and as they lack, the rest's.
 
@@ -74,7 +80,7 @@ def _face(solid: solids.Solid, X: Array, N: Array) -> list[Record]:
     places = [place for name, place in solid.marks.items() if name.startswith("eye")]
     ball, faces, normals = balls.sphere(_NOSE, nose, 16)
     eyes = mesh_look.eyes(X, N, places, solid.eye, front)
-    return [*eyes, Surface(ball, faces, style.INK, normals)]
+    return [*eyes, Surface(ball, faces, style.PUPIL, normals)]
 
 
 def hatched(family: Family, X: Array, lacking: Array, camera: Camera, box: Box) -> list[Record]:

@@ -68,7 +68,8 @@ def drawing(family: Family, way: str, weights: Array) -> Drawing:
         upright.append(family.upright(np.array([[0.0, 0.0, top + _PLUMB]])))
     narrow = min(above[0][2], below[0][2])
     camera = mesh_page.together(upright, family.direction, (0.0, 0.0, narrow, tall), 1.06)
-    colours = [look.REST, *map(look.target, range(many - 1))]
+    tones = [look.REST, *map(look.target, range(many - 1))]
+    colours = [look.own(family, k, three) for k, three in enumerate(tones)]
     views = [
         View(tuple(look.creature(family, X, camera, *own)), camera, box)
         for X, own, box in zip(shapes, colours, above, strict=True)
@@ -195,7 +196,7 @@ def _views(family: Family, one: Shown, camera: Camera, box: Box) -> list[View]:
         texts = [look.line(text, middle[0], middle[1] + 40.0 - 40.0 * k) for k, text in enumerate(lines)]
         return [View(tuple(texts))]
     X = one.blended.vertices
-    records = look.creature(family, X, camera, *look.RESULT)
+    records = look.creature(family, X, camera, *look.own(family, 0, look.RESULT))
     records += look.hatched(family, X, one.blended.fallback, camera, box)
     views = [View(tuple(records), camera, box)]
     if _has_tip(family):

@@ -70,7 +70,8 @@ class Shown:
     """A shape, its keys, the ways through them, how many poses between them, and a moment.
 
     `asked` is the largest ratio of stretches of a key, `meets` whether the ways pass through all of them,
-    `stand` (3, 3) turns what is upwards in the shape's file upwards on the page.
+    `stand` (3, 3) turns what is upwards in the shape's file upwards on the page; `painted` (n, 4) are colours
+    of the shape's own, in which keys and the moment are drawn: their outlines still say which is which.
     """
 
     V: np.ndarray
@@ -83,6 +84,7 @@ class Shown:
     asked: float
     meets: bool
     stand: np.ndarray
+    painted: np.ndarray | None = None
 
     @property
     def step(self) -> float:
@@ -184,7 +186,8 @@ def _view(s: Shown, p: _Pose, scale: float, at: tuple[float, float]) -> scene.Vi
     length = np.linalg.norm(N, axis=1, keepdims=True)
     N = (N / np.where(length > 0.0, length, 1.0)) @ s.stand.T
     fill, edge, width = (style.WRONG, style.INK, 1.6) if inverted else _LOOKS[p.kind]
-    records = mesh_look.surface(X, F, fill, normals=N)
+    color = fill if s.painted is None or inverted or p.kind == 1 else s.painted
+    records = mesh_look.surface(X, F, color, normals=N)
     return scene.View((*records, *mesh_look.outline(X, F, camera, edge, width)), camera, box)
 
 

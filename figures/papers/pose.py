@@ -9,6 +9,8 @@ from lietool.deform import pose as deform_pose
 from lietool.figure import Drawing, Param, Plate, Time, figure
 from lietool.mesh import solids, surface_io
 from lietool.mesh.surface import Mesh
+from lietool.render import mesh_look
+from lietool.render.camera import STAND
 
 from . import _pose_keys as keys_of
 from . import _pose_page as page
@@ -16,8 +18,6 @@ from . import _pose_page as page
 _SOLIDS = {"duck": solids.duck, "animal": solids.animals, "cactus": solids.cactus, "octopus": solids.octopus}
 # Moments at which determinants are measured, and to how many digits what splines make of rounding is kept.
 _MOMENTS, _DIGITS = 601, 10
-# From the file's z or y upwards to z upwards.
-_UP = {"z": np.eye(3), "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}
 # Curves that pass keys by: they need not turn as far.
 _NEAR = ("b_spline_near", "bezier")
 
@@ -117,7 +117,9 @@ def pose(
     span = given.times[[0, -1]]
     now = float(span[0] + t * (span[1] - span[0]))
     asked, meets = _ratio(given.A[:, :3, :3]), curve not in _NEAR
-    shown = page.Shown(V, body.faces, normals, given, tuple(rows), frames, now, asked, meets, _UP[up])
+    stand = STAND if up == "y" else np.eye(3)
+    painted = None if body.colours is None else mesh_look.vertex_colors(body.colours)
+    shown = page.Shown(V, body.faces, normals, given, tuple(rows), frames, now, asked, meets, stand, painted)
     A = deform_pose.evaluate(rows[0].path, min(max(now, span[0]), span[1]))
     moved = body.moved(V @ A[:3, :3].T + A[:3, 3])
     return Drawing(page.picture(shown), _numbers(given, rows, A), moved)

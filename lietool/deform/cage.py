@@ -33,6 +33,7 @@ Mask = NDArray[np.bool_]
 
 Weigh = Callable[[Array, Array, cage_frames.Elements], Array]
 Lift = Callable[[Array, Index], adjacency.Lift]
+Maps = Callable[[cage_frames.Rest, Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +144,7 @@ def pose(
     way: ways.Way = ways.PHI_SO,
     policy: orientation.Policy | None = None,
     lift: Lift | None = adjacency.consistent,
+    maps: Maps = cage_frames.maps,
 ) -> Pose:
     """Return the transformations that the elements tell in a pose of the cage.
 
@@ -162,6 +164,8 @@ def pose(
     lift : callable or None
         Rotation vectors from rotations and neighbours, for ways that keep whole turns:
         `adjacency.consistent`, or a partial of it that states seeds; None for the principal ones.
+    maps : callable
+        The maps of the tetrahedra from their rest and the cage now.
 
     Returns
     -------
@@ -175,7 +179,7 @@ def pose(
     now = topology.vertices("cage.pose", "V", V, 3)
     if len(now) != len(prepared.vertices):
         topology.fail("cage.pose", "V", f"the {len(prepared.vertices)} vertices of the cage", f"{len(now)}")
-    B = move.about(cage_frames.maps(prepared.rest, now), prepared.anchored.origins)
+    B = move.about(maps(prepared.rest, now), prepared.anchored.origins)
     if policy is None and way is ways.LINEAR:
         oriented = orientation.Oriented(B, np.zeros(len(B), dtype=bool))
     else:

@@ -12,7 +12,7 @@ turns that are stated, beyond 2 pi.  Only linear parts matter here, and so phi_s
 without stated turns.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -61,6 +61,9 @@ class Prepared:
     stiffness: Any
     divergence: Any
     factor: systems.Factor
+
+
+Join = Callable[[Prepared, Array, Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,6 +172,7 @@ def solve(
     *,
     pinned: ArrayLike | None = None,
     turns: ArrayLike | None = None,
+    joined: Join | None = None,
 ) -> Result:
     """Return the mesh with its handles moved.
 
@@ -185,6 +189,8 @@ def solve(
         What moves the pins; the identity unless given.
     turns : array_like, shape (k, 3), optional
         Axis times number of whole turns, on top of each handle's principal rotation; for phi_so.
+    joined : callable, optional
+        What puts the faces together again: `join` unless given.
 
     Returns
     -------
@@ -214,8 +220,40 @@ def solve(
         guide = np.where(fallback[:, None, None], _guide(prepared, polar, ways.POLAR_QUATERNION), guide)
     owners = (prepared.pins, *prepared.handles)
     values = [prepared.vertices[own] @ M[:3, :3].T + M[:3, 3] for own, M in zip(owners, moves, strict=True)]
-    found = prepared.factor.solve(_right(prepared, guide), np.concatenate(values))
+    found = (joined or join)(prepared, guide, np.concatenate(values))
     return Result(prepared, found, guide, fallback)
+
+
+def join(prepared: Prepared, guide: ArrayLike, values: ArrayLike) -> Array:
+    """Return the vertices whose coordinates have the gradients that are nearest to those asked for.
+
+    Book: (7.12), (7.14)
+
+    Parameters
+    ----------
+    prepared : Prepared
+    guide : array_like, shape (m, 3, 3)
+        The linear map G of each face: the gradient of coordinate a is to be the sum over b of G_ab grad x_b.
+    values : ndarray, shape (k, 3)
+        Where the vertices of pins and handles are, in the order of `prepared.factor.fixed`.
+
+    Returns
+    -------
+    vertices : ndarray, shape (n, 3)
+
+    Raises
+    ------
+    ValueError
+        If a shape does not fit or a number is not finite.
+    """
+    where, held = "poisson.join", len(prepared.factor.fixed)
+    maps = checks.array(where, "guide", guide, (3, 3))
+    if maps.shape != (len(prepared.faces), 3, 3):
+        checks.fail(where, "guide", f"shape ({len(prepared.faces)}, 3, 3)", f"shape {maps.shape}", None)
+    places = checks.array(where, "values", values, (3,))
+    if places.shape != (held, 3):
+        checks.fail(where, "values", f"shape ({held}, 3)", f"shape {places.shape}", None)
+    return prepared.factor.solve(_right(prepared, maps), places)
 
 
 def _parameters(where: str, way: ways.Way, moves: Array, turns: ArrayLike | None) -> tuple[Array, Mask]:

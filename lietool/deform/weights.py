@@ -134,6 +134,32 @@ def inverse_distance(distances: ArrayLike, power: float = 2.0) -> Array:
     return w
 
 
+def shepard(points: ArrayLike, centres: ArrayLike, power: float = 2.0) -> Array:
+    """Return 1 / r^p of the straight distances, divided by their sum: Shepard's weights.
+
+    Book: 7.2
+    Kaji-Ochiai: 5.1
+
+    Parameters
+    ----------
+    points : (n, 3)
+    centres : (k, 3)
+    power : float
+        Above 0.
+
+    Returns
+    -------
+    w : (n, k)
+        They sum to 1; at a probe all is its.
+
+    Raises
+    ------
+    ValueError
+        As `distances` and `inverse_distance`.
+    """
+    return partition_of_unity(inverse_distance(distances(points, centres), power))
+
+
 def cutoff(distances: ArrayLike, reach: ArrayLike, power: float = 2.0) -> Array:
     """Return ((reach - r) / reach)^p within the reach of a probe and 0 beyond.
 

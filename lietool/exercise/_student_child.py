@@ -4,17 +4,23 @@ It knows no lietool and has an empty environment.  It imports numpy, takes away 
 an exercise has no use for, then loads the student's text and calls its functions, as it is asked to.
 """
 
+import contextlib
 import importlib
 import importlib.machinery
 import json
 import os
 import random
+import signal
 import sys
 import types
+from collections.abc import Callable
 from typing import Any
 
 # Of a message of an exception: it may be anything.
 _LONGEST = 300
+_MOST_PARTS = 100
+# The modules whose exceptions are no student's.
+_OURS = ("__main__", "_student_guard", "_student_wire")
 
 
 def _beside(name: str) -> Any:
@@ -57,6 +63,10 @@ class _Channel:
             view = view[self._write(self.number, view) :]
 
 
+class _TooLongError(BaseException):
+    """The time is over."""
+
+
 class _NoAnswerError(Exception):
     """What a function returned is no answer."""
 
@@ -65,12 +75,12 @@ class _NoFunctionError(Exception):
     """The file has no such function."""
 
 
-def _numbers(np: Any, value: Any) -> Any:
+def _numbers(asarray: Callable[[Any], Any], value: Any) -> Any:
     """Return as an array of numbers what a function returned."""
     if value is None:
         raise _NoAnswerError("it returned None: is a return missing?")
     try:
-        array = np.asarray(value)
+        array = asarray(value)
     except ValueError:
         raise _NoAnswerError(
             f"it returned a {type(value).__name__} that is no array: its rows differ"
@@ -81,23 +91,25 @@ def _numbers(np: Any, value: Any) -> Any:
         raise _NoAnswerError(f"it returned an array of dtype {array.dtype} where numbers are wanted")
     # Of long doubles no two machines agree how long they are.
     if array.dtype.kind in "fc" and array.dtype.itemsize > (16 if array.dtype.kind == "c" else 8):
-        array = array.astype(np.complex128 if array.dtype.kind == "c" else np.float64)
+        array = array.astype("c16" if array.dtype.kind == "c" else "f8")
     return array
 
 
-def _answer(np: Any, value: Any, most: int) -> Any:
-    parts = tuple(_numbers(np, part) for part in value) if isinstance(value, tuple) else _numbers(np, value)
-    arrays = parts if isinstance(parts, tuple) else (parts,)
+def _answer(asarray: Callable[[Any], Any], value: Any, most: int) -> Any:
+    if isinstance(value, tuple) and len(value) > _MOST_PARTS:
+        raise _NoAnswerError(f"it returned a tuple of {len(value)}, more than any exercise asks for")
+    arrays = [_numbers(asarray, part) for part in (value if isinstance(value, tuple) else (value,))]
     if sum(array.nbytes for array in arrays) > most:
         shapes = ", ".join(str(array.shape) for array in arrays)
         raise _NoAnswerError(f"it returned too much: shape {shapes}, more than {most >> 20} MiB")
-    return parts
+    return tuple(arrays) if isinstance(value, tuple) else arrays[0]
 
 
 def _kind(error: BaseException, refused: tuple[type, ...]) -> str:
     for types_, kind in (
         (refused, "refused"),
         (_NoAnswerError, "output"),
+        (_TooLongError, "time"),
         (MemoryError, "memory"),
         ((SystemExit, KeyboardInterrupt, GeneratorExit), "exit"),
     ):
@@ -127,8 +139,9 @@ def _trouble(error: BaseException, name: str, refused: tuple[type, ...]) -> dict
         if step.tb_frame.f_code.co_filename == name:
             line = step.tb_lineno
         step = step.tb_next
-    bases = [base.__name__ for base in cls.__mro__[1:] if base is not object]
-    return {"kind": kind, "message": said, "name": cls.__name__, "bases": bases, "line": line}
+    theirs = () if cls.__module__ in _OURS else cls.__mro__
+    names = [base.__name__ for base in theirs if base is not object] or [""]
+    return {"kind": kind, "message": said, "name": names[0], "bases": names[1:], "line": line}
 
 
 class _Loop:
@@ -136,9 +149,13 @@ class _Loop:
 
     def __init__(self, channel: _Channel, settings: dict[str, Any], np: Any, guard: Any) -> None:
         self.channel, self.np, self.guard = channel, np, guard
+        # As it is now, whatever the student makes of numpy.
+        self.asarray = np.asarray
         self.name, self.most, self.allowed = settings["name"], settings["answer"], settings["allowed"]
+        self.seconds, self.busy = 0.0, False
         self.module = types.ModuleType("submission")
-        self.random, self.printed = settings["random"], (sys.stdout, sys.stderr)
+        self.random = settings["random"]
+        self.printed: tuple[Any, Any] = (sys.stdout, sys.stderr)
 
     def load(self, source: str, seed: int) -> None:
         """Run the student's text."""
@@ -154,7 +171,7 @@ class _Loop:
         found = self.module.__dict__.get(function)
         if not callable(found):
             raise _NoFunctionError(self._missing(function))
-        return _answer(self.np, found(*args), self.most)
+        return _answer(self.asarray, found(*args), self.most)
 
     def _missing(self, function: str) -> str:
         names = self.module.__dict__
@@ -164,24 +181,40 @@ class _Loop:
             return f"{function} is no function in the file"
         return f"the file has no function {function}" + (f": it has {', '.join(there)}" if there else "")
 
+    def stop(self, *_: object) -> None:
+        """Stop what the student's function does."""
+        if self.busy:
+            raise _TooLongError
+
     def turn(self) -> None:
         """Answer one question."""
         head, args = self.channel.ask()
         number = head["id"]
+        if self.seconds:
+            # Where the grader cannot see the processor's time.
+            signal.setitimer(signal.ITIMER_PROF, self.seconds, 0.5)
         try:
-            if "source" in head:
-                self.load(head["source"], head["seed"])
-                message = self.channel.wire.pack({"id": number})
-            else:
-                message = self.channel.wire.pack({"id": number}, [self.call(head["function"], args)])
+            self.busy = True
+            message = self.reply(number, head, args)
+            self.busy = False
         except BaseException as error:
+            self.busy = False
             message = self._failure(number, error)
+        if self.seconds:
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
         for file in self.printed:
             try:
                 file.flush()
             except BaseException:
                 continue
         self.channel.say(message)
+
+    def reply(self, number: int, head: dict[str, Any], args: list[Any]) -> bytes:
+        """Do what a question asks for."""
+        if "source" in head:
+            self.load(head["source"], head["seed"])
+            return self.channel.wire.pack({"id": number})
+        return self.channel.wire.pack({"id": number}, [self.call(head["function"], args)])
 
     def _failure(self, number: int, error: BaseException) -> bytes:
         try:
@@ -198,17 +231,24 @@ class _Loop:
 def _begin() -> _Loop:
     """Make ready: numpy is imported, and then the walls go up."""
     number, settings = int(sys.argv[1]), json.loads(sys.argv[2])
-    sys.argv[:] = ["submission"]
+    sys.argv[:] = sys.orig_argv[:] = ["submission"]
     kernel, guard = _beside("_student_kernel"), _beside("_student_guard")
     kernel.follow(settings["parent"])
     # Without site it is the standard library's, and nothing else.
     settings["library"] = [os.path.abspath(path) for path in sys.path]  # noqa: PTH100
     sys.path += [os.path.dirname(path) for path in settings["packages"]]  # noqa: PTH120
-    guard.hide_ctypes()
+    if not settings["allowed"]:
+        # It is soon imported, and numpy can be without; others cannot.
+        guard.hide_ctypes()
     import numpy
 
     for name in settings["allowed"]:
         importlib.import_module(name)
+    guard.hide_ctypes()
+    # Their library is the system's, which is soon out of reach; what numpy brings only when asked wants them.
+    for name in ("binascii", "zlib"):
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
     if settings["random"]:
         # The seed of a generator that is given none: of the system's noise nothing could be graded twice.
         setattr(numpy.random.bit_generator, "randbits", random.getrandbits)  # noqa: B010 - it has no type
@@ -216,9 +256,16 @@ def _begin() -> _Loop:
     channel = _Channel(number, wire)
     loop = _Loop(channel, settings, numpy, guard)
     sys.dont_write_bytecode = True
+    for file in loop.printed:
+        # What it has printed is there when it hangs or dies; and no letter of a student's fails.
+        file.reconfigure(line_buffering=True, errors="backslashreplace")
     # Whoever looks for what was started finds nothing of it here.
     sys.modules["__main__"] = types.ModuleType("__main__")
-    walls = kernel.walls(settings)
+    loop.seconds = 0.0 if settings["clock"] else settings["cpu"]
+    for which in (signal.SIGXCPU, signal.SIGPROF):
+        signal.signal(which, loop.stop)
+    kernel.limit(settings)
+    walls = kernel.walls(settings) if settings["walls"] else []
     guard.stand(settings)
     channel.say(wire.pack({"id": 0, "walls": walls}))
     return loop
@@ -226,5 +273,9 @@ def _begin() -> _Loop:
 
 if __name__ == "__main__":
     loop = _begin()
-    while True:
-        loop.turn()
+    try:
+        while True:
+            loop.turn()
+    finally:
+        # Who has closed the channel has nobody to tell what happened.
+        os._exit(1)

@@ -20,11 +20,11 @@ _PLAIN = _words("""
     heapq io itertools json math numbers numpy operator pprint random re statistics string struct sys textwrap
     time types typing typing_extensions warnings
 """)
-# Refused to everyone, also to a module of the library that a student has reached through another.
+# Refused to everyone, also to a module of the library that a student has reached through another: no event
+# tells what they do.
 _NEVER = _words("""
-    _ctypes _curses _interpreters _multiprocessing _posixshmem _posixsubprocess _socket _sqlite3 _ssl
-    _testcapi _testinternalcapi _xxinterpchannels _xxsubinterpreters asyncio ctypes fcntl mmap multiprocessing pty
-    readline resource socket sqlite3 ssl subprocess
+    _ctypes _curses _interpreters _multiprocessing _posixshmem _testcapi _testinternalcapi _testlimitedcapi
+    _xxinterpchannels _xxsubinterpreters ctypes fcntl mmap readline resource
 """)
 _ALONE = "an exercise is to be written with numpy alone"
 _WORKS = "a function of an exercise works from its arguments alone"
@@ -48,7 +48,7 @@ _SAYS = (
 )
 
 
-class RefusedImportError(ImportError):
+class RefusedImportError(ModuleNotFoundError):
     """A module that a student's file is not to import."""
 
 
@@ -82,7 +82,8 @@ def builtins_for_a_student(allowed: Sequence[str]) -> dict[str, Any]:
             raise RefusedImportError(f"{name} is refused: {_ALONE}", name=name)
         return true_import(name, globals, locals, fromlist or (), level)
 
-    return {**builtins.__dict__, "__import__": guarded}
+    # What site brings to others.
+    return {**builtins.__dict__, "__import__": guarded, "exit": sys.exit, "quit": sys.exit}
 
 
 def _may(name: str, allowed: Sequence[str]) -> bool:
@@ -105,7 +106,7 @@ class _Finder:
     def find_spec(self, name: str, path: object = None, target: object = None) -> None:
         """Refuse a module, or leave it to the next."""
         top, _, rest = name.partition(".")
-        if top in self._known or top == "numpy":
+        if top in self._known or top == "numpy" or top.startswith("_sysconfigdata"):
             return
         if top in self._tops and (
             not rest or rest.startswith("_") or f"{top}.{rest.split('.')[0]}" in self._parts
@@ -124,7 +125,17 @@ def stand(settings: dict[str, Any]) -> None:
     """
     sys.path[:] = settings["library"]
     sys.meta_path.insert(0, _Finder(settings["allowed"]))
+    # Of these Python tells its hooks from 3.12 on.
+    for name in ("_thread", "threading"):
+        for start in ("start_new_thread", "start_new", "start_joinable_thread"):
+            for place in (start, f"_{start}"):
+                if hasattr(sys.modules.get(name), place):
+                    setattr(sys.modules[name], place, _no_thread)
     sys.addaudithook(_hook(settings))
+
+
+def _no_thread(*_: object, **__: object) -> None:
+    raise RefusedError(f"starting a thread is refused: {_WORKS}")
 
 
 def _hook(settings: dict[str, Any]) -> Any:

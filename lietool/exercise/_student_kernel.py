@@ -39,8 +39,8 @@ def limit(settings: dict[str, Any]) -> None:
     Parameters
     ----------
     settings : dict
-        With "memory" in bytes beyond what is used now, "processes", "files", "written" in bytes and "cpu" in
-        seconds: as `lietool.exercise.student.Limits`.
+        With "memory" in bytes beyond what is used now, "files" and "written" in bytes, as
+        `lietool.exercise.student.Limits`.
     """
     import resource
 
@@ -48,8 +48,10 @@ def limit(settings: dict[str, Any]) -> None:
         "RLIMIT_CORE": 0,
         "RLIMIT_FSIZE": settings["written"],
         "RLIMIT_NOFILE": settings["files"],
-        "RLIMIT_NPROC": settings["processes"],
+        "RLIMIT_NPROC": 0,
         "RLIMIT_AS": _used() + settings["memory"],
+        # Seconds in all: the grader has ended it long before, if it was not killed itself.
+        "RLIMIT_CPU": 3600,
     }
     for name, most in wanted.items():
         # One that a system does not have, or does not let us set, is left out.
@@ -82,16 +84,11 @@ def walls(settings: dict[str, Any]) -> list[str]:
     list of str
         Those that stand: "files", "calls".
     """
-    limit(settings)
     if _C is None or sys.platform != "linux":
         return []
     _C.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
-    readable = [*settings["packages"], *_of_library(settings["library"])]
-    return [
-        name
-        for name, stands in (("files", _wall_files(readable, settings["folder"])), ("calls", _wall_calls()))
-        if stands
-    ]
+    files, calls = _wall_files(settings), _wall_calls()
+    return [name for name, stands in (("files", files), ("calls", calls)) if stands]
 
 
 def _of_library(folders: Sequence[str]) -> Iterable[str]:
@@ -110,20 +107,23 @@ _CREATE_RULESET, _ADD_RULE, _RESTRICT = 444, 445, 446
 _KNOWN = {1: 13, 2: 14, 3: 15, 4: 15}
 
 
-def _wall_files(readable: Iterable[str], folder: str) -> bool:
+def _wall_files(settings: dict[str, Any]) -> bool:
     version = _C.syscall(_CREATE_RULESET, None, 0, 1)
     if version < 1:
         return False
     known = (1 << _KNOWN.get(version, 16)) - 1
-    # From the fourth on also the network, to bind and to connect.
-    attributes = struct.pack("QQ", known, 3 if version >= 4 else 0)[: 16 if version >= 4 else 8]
+    # From the fourth on also the network, to bind and to connect; from the sixth on signals to others.
+    attributes = struct.pack("QQQ", known, 3, 3)[: 24 if version >= 6 else 16 if version >= 4 else 8]
     rules = _C.syscall(_CREATE_RULESET, attributes, len(attributes), 0)
     if rules < 0:
         return False
     try:
-        for path in readable:
+        for path in (*settings["packages"], *_of_library(settings["library"])):
             _allow(rules, path, _READ | _LIST)
-        _allow(rules, folder, (_READ | _WRITE | _LIST | _MAKE | _TRUNCATE) & known)
+        for path in settings["library"]:
+            # To find a module in.
+            _allow(rules, path, _LIST)
+        _allow(rules, settings["folder"], (_READ | _WRITE | _LIST | _MAKE | _TRUNCATE) & known)
         return _C.syscall(_RESTRICT, rules, 0) == 0
     finally:
         os.close(rules)
@@ -207,6 +207,7 @@ _CALLS = {
     "getrandom": (318, 278),
     "statx": (332, 291),
     "rseq": (334, 293),
+    "close_range": (436, 436),
     "faccessat2": (439, 439),
 }
 # By machine: its column above, its name for the filter, and its tgkill.

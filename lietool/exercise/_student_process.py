@@ -19,14 +19,14 @@ from lietool.exercise import _student_wire as wire
 from lietool.exercise._student_folder import Folder
 from lietool.exercise._student_trouble import Limits, Trouble, told_by
 
-# Of threads that would make times and sums depend on the machine, and of hashes.
+# So that times, sums and the order of sets do not depend on the machine or the hour.
 _ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",
     "OMP_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
     "VECLIB_MAXIMUM_THREADS": "1",
     "PYTHONHASHSEED": "0",
-    "LC_ALL": "C.UTF-8",
+    "PYTHONUTF8": "1",
 }
 # Seconds between two looks at its time and its folder while it computes.
 _LOOK = 0.05
@@ -37,6 +37,10 @@ _KEPT = 16_000
 _MOST_FILES = 100
 # Seconds in which a process that has closed the channel ends by itself, and says how.
 _PATIENCE = 0.5
+# How many times as long as it may one lasts that computes, where others have the processor.
+_BUSY = 9
+# A test takes them away.
+_WALLS = True
 _CHILD = Path(__file__).with_name("_student_child.py")
 
 
@@ -58,32 +62,27 @@ class Process:
         self.limits, self.printed, self._heard = limits, bytearray(), 0
         self.walls: tuple[str, ...] | None = None
         self.loaded, self._asked = False, 0
+        self._late = ""
         self._folder = Folder()
         self._socket, theirs = socket.socketpair()
         told = {
             **asdict(limits),
             "parent": os.getpid(),
             "clock": _clock_of(os.getpid()) is not None,
+            "walls": _WALLS,
             "allowed": list(allowed),
             "name": name,
             "folder": self._folder.path,
             "random": uses_random,
             "packages": _packages(("numpy", *(module.split(".")[0] for module in allowed))),
         }
-        # No site: it brings the packages beside numpy, and files that run at the start.
-        command = [sys.executable, "-S", "-s", "-P", "-Wignore", str(_CHILD), str(theirs.fileno())]
         with theirs:
-            self._process = subprocess.Popen(
-                [*command, json.dumps(told)],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                bufsize=0,
-                cwd=self._folder.path,
-                env=_ENVIRONMENT,
-                pass_fds=(theirs.fileno(),),
-                start_new_session=True,
-            )
+            try:
+                self._process = _started(told, theirs.fileno())
+            except BaseException:
+                self._socket.close()
+                self._folder.remove()
+                raise
         assert self._process.stdout is not None
         self._output = self._process.stdout.fileno()
         os.set_blocking(self._output, False)
@@ -124,15 +123,21 @@ class Process:
         if head.get("id") != self._asked:
             raise self._stopped("output", "it answered what it was not asked")
         if "trouble" in head:
-            raise told_by(head["trouble"])
+            trouble = told_by(head["trouble"])
+            if trouble.kind == "time" or self._late:
+                raise self._stopped("time", self._late or self._too_long(), trouble.line)
+            raise trouble
+        if self._late:
+            raise self._stopped("time", self._late)
         return values
 
     def end(self) -> None:
         """End the process and all that it has started, and remove its folder."""
-        # The group first: while its leader is not waited for, nobody else has its number.
-        if self.lives:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._process.pid, signal.SIGKILL)
+        if self._socket.fileno() < 0:
+            return
+        # Also where it is gone itself: its number is its group's, while there is one in that.
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
         self._socket.close()
         assert self._process.stdout is not None
@@ -140,8 +145,9 @@ class Process:
         self._folder.remove()
 
     def _exchange(self, message: bytes, cpu: float, wall: float) -> tuple[dict[str, Any], list[Any]]:
+        """Send a message and return the answer; `_late` says whether the time was over before it came."""
         left, incoming = memoryview(message), wire.Incoming(self.limits.answer)
-        number = self._socket.fileno()
+        number, ends, self._late = self._socket.fileno(), float("inf"), ""
         while True:
             left = left[self._send(left) :]
             self._poll.register(number, select.POLLIN | (select.POLLOUT if left else 0))
@@ -150,9 +156,16 @@ class Process:
                     self._hear()
                 elif self._receive(incoming):
                     self._hear()
-                    self._look(cpu, float("inf"))
+                    self._look_in_folder()
+                    self._late = self._late or self._lateness(cpu, float("inf"))
                     return self._read(incoming)
-            self._look(cpu, wall)
+            self._look_in_folder()
+            if time.monotonic() > ends:
+                raise self._stopped("time", self._late)
+            if not self._late and (late := self._lateness(cpu, wall)):
+                # Python stops there and says where it was; what is deep in numpy hears nothing.
+                self._late, ends = late, time.monotonic() + _PATIENCE
+                os.kill(self._process.pid, signal.SIGXCPU)
 
     def _send(self, data: memoryview) -> int:
         try:
@@ -206,42 +219,71 @@ class Process:
         except OSError:
             return 0.0
 
-    def _look(self, cpu: float, wall: float) -> None:
-        """End it if it has used what it may."""
+    def _lateness(self, cpu: float, wall: float) -> str:
+        """Return what is to be said if it has used the time that it has."""
         if self._cpu() > cpu:
-            raise self._stopped("time", self._late())
-        if time.monotonic() > wall:
-            raise self._stopped(
-                "time", f"it gave no answer in {self.limits.wall:g} s: it waits for something"
-            )
+            return self._too_long()
+        late = time.monotonic() - wall
+        if late > 0 and (late > _BUSY * self.limits.wall or not self._computes()):
+            return f"it gave no answer in {self.limits.wall:g} s: it waits for something"
+        return ""
+
+    def _computes(self) -> bool:
+        """Return whether it has the processor, or would have it if that were not busy."""
+        try:
+            stat = Path(f"/proc/{self._process.pid}/stat").read_text()
+        except OSError:
+            return False
+        # After the name, which may hold anything.
+        return stat.rpartition(")")[2].split()[0] == "R"
+
+    def _too_long(self) -> str:
+        return f"it took more than {self.limits.cpu:g} s: is there a loop that does not end?"
+
+    def _look_in_folder(self) -> None:
         size, count = self._folder.written()
         if size > self.limits.written or count > _MOST_FILES:
             raise self._stopped("output", f"it wrote more than {_size(self.limits.written)} to files")
 
-    def _late(self) -> str:
-        return f"it took more than {self.limits.cpu:g} s: is there a loop that does not end?"
-
-    def _stopped(self, kind: str, message: str) -> Trouble:
+    def _stopped(self, kind: str, message: str, line: int | None = None) -> Trouble:
         self.end()
-        return Trouble(kind, message)
+        return Trouble(kind, message, line=line)
 
     def _died(self) -> Trouble:
         """Return why it has closed the channel."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(_PATIENCE)
         code = self._process.returncode
-        if code is None:
-            return self._stopped("exit", "it closed the channel to the grader")
         with contextlib.suppress(Trouble):
             self._hear()
+        if self._late:
+            return self._stopped("time", self._late)
+        if code is None:
+            return self._stopped("exit", "it closed the channel to the grader")
         self.end()
         if code >= 0:
             return Trouble("exit", f"it ended its process (exit status {code})")
-        if -code in (signal.SIGPROF, signal.SIGXCPU):
-            return Trouble("time", self._late())
         if -code == signal.SIGKILL:
             return Trouble("memory", "the system ended it, most likely for the memory that it used")
-        return Trouble("crash", f"it crashed the interpreter ({signal.Signals(-code).name})")
+        with contextlib.suppress(ValueError):
+            return Trouble("crash", f"it crashed the interpreter ({signal.Signals(-code).name})")
+        return Trouble("crash", f"it crashed the interpreter (signal {-code})")
+
+
+def _started(told: dict[str, Any], number: int) -> "subprocess.Popen[bytes]":
+    # No site: it brings the packages beside numpy, and files that run at the start.
+    command = [sys.executable, "-S", "-s", "-P", "-Wignore", str(_CHILD), str(number), json.dumps(told)]
+    return subprocess.Popen(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        bufsize=0,
+        cwd=told["folder"],
+        env=_ENVIRONMENT,
+        pass_fds=(number,),
+        start_new_session=True,
+    )
 
 
 def _size(count: int) -> str:

@@ -1,28 +1,29 @@
 """What a student's process may use, and what comes of a call that gives no value."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 # Characters of a message.
 _LONGEST = 400
-_KINDS = ("memory", "exit", "refused", "output")
+_ADDRESS = re.compile(" at 0x[0-9a-fA-F]+")
+_KINDS = ("time", "memory", "exit", "refused", "output")
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a student's process may use.
+    """What a student's process may use; other processes and threads it may not start.
 
     Parameters
     ----------
     cpu : float
         Seconds of the processor's time, in one call.
     wall : float
-        Seconds that a call may last.
+        Seconds that a call may last.  On Linux one that computes goes on, since the machine may be busy with
+        others; ten times as long at most.
     memory : int
         In bytes of addresses, beyond what Python and numpy take.
-    processes : int
-        Of its own; threads count too.
     files : int
         Open at once.
     written : int
@@ -34,7 +35,6 @@ class Limits:
     cpu: float = 5.0
     wall: float = 20.0
     memory: int = 1 << 30
-    processes: int = 0
     files: int = 32
     written: int = 4 << 20
     answer: int = 64 << 20
@@ -84,5 +84,6 @@ def told_by(told: Any) -> Trouble:
 
 
 def plain(text: str) -> str:
-    """Return a text that a terminal takes as text: no escapes, nothing that turns its direction."""
+    """Return a text that a terminal takes as text, and that is the same another time: addresses are not."""
+    text = _ADDRESS.sub(" at 0x...", text)
     return "".join(c if c.isprintable() or c in "\n\t" else "\N{REPLACEMENT CHARACTER}" for c in text)

@@ -13,6 +13,8 @@ from lietool.exercise.record import Case, Exercise, Value
 
 # How near a wrong function must be, relative to its values: nearer than two of them are to each other.
 _NEAR = 1e-7
+# With fewer answers than these, those that failed are looked at too.
+_ENOUGH = 3
 # Of several mistakes that explain it, those that are told.
 _MOST = 2
 REFUSED = object()
@@ -38,7 +40,8 @@ def sentences(exercise: Exercise, seen: Sequence[Seen]) -> tuple[str, ...]:
     """Return what explains the results of a student's functions.
 
     A mistake does if it gives what the student's function gives for all inputs, and does not for all of
-    them give what is right.
+    them give what is right.  Inputs that the student's function fails for say nothing, where there are
+    others: who cannot take batches may have made a mistake besides.
 
     Parameters
     ----------
@@ -70,8 +73,9 @@ def sentences(exercise: Exercise, seen: Sequence[Seen]) -> tuple[str, ...]:
 
 
 def _explains(exercise: Exercise, mistake: _Wrong, seen: Sequence[Seen]) -> bool:
+    answered = [x for x in seen if x.got is not REFUSED]
     differs = False
-    for x in seen:
+    for x in answered if len(answered) >= _ENOUGH else seen:
         name = x.case.function
         try:
             with np.errstate(all="ignore"):
@@ -80,7 +84,9 @@ def _explains(exercise: Exercise, mistake: _Wrong, seen: Sequence[Seen]) -> bool
             made = REFUSED
         if not _same(exercise, name, x.got, made, _NEAR):
             return False
-        differs = differs or not _same(exercise, name, made, x.want)
+        # Near a mistake that is itself nearly right is no sign of it where the student is right.
+        right = _same(exercise, name, made, x.want) or _same(exercise, name, x.got, x.want)
+        differs = differs or not right
     return differs
 
 

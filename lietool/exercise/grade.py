@@ -14,7 +14,7 @@ from lietool.exercise.record import Case, Check, Claim, Exercise
 from lietool.exercise.student import Limits, Student, Trouble
 
 # A function that has run out of its time twice will do so again: what is left is lost without waiting.
-_PATIENCE = 2
+PATIENCE = 2
 
 
 def grade(
@@ -106,8 +106,8 @@ class _Trial:
 
     def call(self, function: str, *args: Any) -> Any:
         """Call a function of the student, unless it has run out of its time too often; raises Trouble."""
-        if self._late.get(function, 0) >= _PATIENCE:
-            raise Trouble("time", f"{function} was not tried again: it ran out of its time {_PATIENCE} times")
+        if self._late.get(function, 0) >= PATIENCE:
+            raise Trouble("time", f"{function} was not tried again: it ran out of its time {PATIENCE} times")
         try:
             return self.student.call(function, *args)
         except Trouble as trouble:

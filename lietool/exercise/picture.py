@@ -1,6 +1,7 @@
 """The plate of an exercise, drawn with a student's function in place of the library's."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,17 @@ def golden(plate: str) -> store.Golden:
         return store.read(_place(plate))
     except (store.GoldenError, figures.FigureError) as error:
         raise ExerciseError(f"plate {plate}: {error}") from None
+
+
+def file(plate: str) -> Path:
+    """Return the file with the accepted picture of a plate; raises ExerciseError as `golden` does."""
+    try:
+        path = _place(plate).png
+    except figures.FigureError as error:
+        raise ExerciseError(f"plate {plate}: {error}") from None
+    if not path.is_file():
+        raise ExerciseError(f"plate {plate}: there is no golden at {path}")
+    return path
 
 
 def drawn(plate: str, functions: Mapping[str, Callable[..., Any]]) -> np.ndarray:

@@ -36,6 +36,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from lietool.exercise import _student_wire as wire
 from lietool.exercise._student_process import Process
 from lietool.exercise._student_trouble import Limits, Trouble, plain
 
@@ -86,7 +87,9 @@ class Student:
             raise RuntimeError(
                 "a student's file is graded in a process with limits: that needs Linux or macOS"
             )
-        self._source, self._functions, self._allowed = source, tuple(functions), tuple(allowed)
+        # A mark that some editors begin a file with is no part of it.
+        self._source = source.removeprefix("\ufeff")
+        self._functions, self._allowed = tuple(functions), tuple(allowed)
         self._limits, self._name, self._seed = limits, name, seed
         self._process: Process | None = None
         self._printed = b""
@@ -139,6 +142,8 @@ class Student:
             if not process.lives:
                 self._forget()
             raise
+        except wire.WireError as error:
+            raise ValueError(f"an argument of {function} cannot be passed: {error}") from None
         if len(values) == 1 and isinstance(values[0], np.ndarray):
             return values[0]
         if len(values) == 1 and isinstance(values[0], tuple):

@@ -11,10 +11,10 @@ _MOST = 16
 _DUST = 1e-14
 
 
-def value(x: Any) -> str:
-    """Return a value in one line: numbers to six digits, and of a long array only its shape."""
+def value(x: Any, digits: int = 6) -> str:
+    """Return a value in one line, arrays with so many digits, and of a long array only its shape."""
     if isinstance(x, tuple | list):
-        return ", ".join(value(part) for part in x)
+        return ", ".join(value(part, digits) for part in x)
     if isinstance(x, str):
         return repr(x)
     array = np.asarray(x)
@@ -23,14 +23,14 @@ def value(x: Any) -> str:
     if array.dtype.kind not in "fiubc":
         return "no numbers"
     if not array.ndim:
-        return _number(array[()], 10)
-    return _row(_without_dust(array))
+        return _number(array[()], max(10, digits))
+    return _row(_without_dust(array), digits)
 
 
-def _row(array: np.ndarray) -> str:
+def _row(array: np.ndarray, digits: int) -> str:
     if not array.ndim:
-        return _number(array[()], 6)
-    return f"[{', '.join(_row(part) for part in array)}]"
+        return _number(array[()], digits)
+    return f"[{', '.join(_row(part, digits) for part in array)}]"
 
 
 def _number(x: Any, digits: int) -> str:
@@ -71,7 +71,7 @@ def beside(got: Any, want: Any) -> tuple[str, str]:
         return "; ".join(a for a, _ in pairs), "; ".join(b for _, b in pairs)
     a, b = np.broadcast_arrays(got, want)
     if b.size <= _MOST:
-        return value(b), value(a)
+        return _told(a, b)
     with np.errstate(invalid="ignore", over="ignore"):
         off = np.where(a == b, 0.0, np.abs(a.astype(b.dtype) - b) if a.dtype.kind != "c" else np.abs(a - b))
     worst = np.unravel_index(int(np.argmax(np.where(np.isnan(off), np.inf, off))), b.shape)
@@ -79,4 +79,14 @@ def beside(got: Any, want: Any) -> tuple[str, str]:
     keep = next((k for k in range(b.ndim) if np.prod(b.shape[k:], dtype=int) <= _MOST), b.ndim)
     index = worst[:keep]
     where = f"[{', '.join(map(str, index))}] "
-    return where + value(b[index]), where + value(a[index])
+    wanted, came = _told(a[index], b[index])
+    return where + wanted, where + came
+
+
+def _told(a: np.ndarray, b: np.ndarray) -> tuple[str, str]:
+    """What was wanted and what came, with as many digits as show that they differ."""
+    wanted, came = value(b), value(a)
+    for digits in (12, 17):
+        if wanted == came:
+            wanted, came = value(b, digits), value(a, digits)
+    return wanted, came

@@ -14,7 +14,8 @@ from lietool.golden.compare_numbers import Difference
 from lietool.golden.report import CHANGED, FAILED, PASSED, Entry
 
 _HERE = Path(__file__).parent / "page"
-_SCRIPTS = ("viewer.js", "review.js", "page.js")
+_SCRIPTS = ("viewer.js", "review.js", "theme.js", "page.js")
+_CALLED = {"expected": "expected", "actual": "actual"}
 # Twice the size that it has in the list, for screens of fine pixels.
 _THUMB = (128, 96)
 _MOST_PLACES = 24
@@ -29,32 +30,43 @@ def render(
     entries: Sequence[Entry], *, title: str, about: Mapping[str, str], notes: Sequence[str], review: str
 ) -> str:
     """Fill the template; parameters and result are those of `report.build`."""
-    import jinja2
     from markupsafe import Markup
 
-    environment = jinja2.Environment(
+    counts = {kind: sum(each.kind == kind for each in entries) for kind in (FAILED, CHANGED, PASSED)}
+    return (
+        environment()
+        .get_template("page.html")
+        .render(
+            title=title,
+            about=about,
+            notes=notes,
+            summary=_summary(counts),
+            counts=[("all", len(entries)), *counts.items()],
+            plates=[_plate(each) for each in entries],
+            report=_digest(entries),
+            review=review,
+            called=_CALLED,
+            style=Markup(read("page.css")),
+            script=Markup("\n".join(map(read, _SCRIPTS))),
+        )
+    )
+
+
+def environment() -> Any:
+    """Return what fills the templates of this folder; what they are given is text, and is escaped."""
+    import jinja2
+
+    return jinja2.Environment(
         loader=jinja2.FileSystemLoader(_HERE),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    counts = {kind: sum(each.kind == kind for each in entries) for kind in (FAILED, CHANGED, PASSED)}
-    return environment.get_template("page.html").render(
-        title=title,
-        about=about,
-        notes=notes,
-        summary=_summary(counts),
-        counts=[("all", len(entries)), *counts.items()],
-        plates=[_plate(each) for each in entries],
-        report=_digest(entries),
-        review=review,
-        style=Markup(_read("page.css")),
-        script=Markup("\n".join(map(_read, _SCRIPTS))),
-    )
 
 
-def _read(name: str) -> str:
+def read(name: str) -> str:
+    """Return a style sheet or script of this folder."""
     return (_HERE / name).read_text(encoding="utf-8")
 
 
@@ -128,15 +140,14 @@ def _pictures(entry: Entry) -> Iterator[dict[str, Any]]:
     }
     for part, (data, says) in parts.items():
         if data is not None:
-            width, height = _size(data)
-            uri = f"data:image/png;base64,{base64.b64encode(data).decode()}"
-            yield {
-                "part": part,
-                "uri": uri,
-                "width": width,
-                "height": height,
-                "alt": f"{entry.name}: {says}",
-            }
+            yield picture(part, data, f"{entry.name}: {says}")
+
+
+def picture(part: str, png: bytes, alt: str) -> dict[str, Any]:
+    """Return what a template shows of a picture: itself, in the page."""
+    width, height = _size(png)
+    uri = f"data:image/png;base64,{base64.b64encode(png).decode()}"
+    return {"part": part, "uri": uri, "width": width, "height": height, "alt": alt}
 
 
 def _size(png: bytes) -> tuple[int, int]:

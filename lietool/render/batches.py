@@ -8,7 +8,7 @@ import numpy as np
 from lietool.render import solids, style
 from lietool.render.camera import Box, Camera, Page, project
 from lietool.render.scene import Arrow, Frame, Image, Label, Lines, Points, Record, Surface, Tube
-from lietool.render.theme import BOOK, Theme
+from lietool.render.theme import BOOK, Theme, light
 
 # More than any page has pixels; a dash that is finer would only take time.
 _MOST_DASHES = 20000
@@ -108,16 +108,16 @@ def _(record: Surface, lens: Lens) -> list[Batch]:
         normals = np.repeat((normals / np.where(length > 0, length, 1.0))[:, None], 3, axis=1)
     else:
         normals = np.asarray(record.normals, float).take(faces, axis=0)
-    color = lens.theme.rgba(record.color, len(vertices), record.alpha).take(faces, axis=0)
+    color = lens.theme.rgba(record.color, len(vertices), record.alpha, shadow=record.material == "shadow")
     material = np.full((*faces.shape, 1), MATERIALS[record.material])
-    data = np.concatenate([corners, normals, color, material], axis=-1).astype("f4")
+    data = np.concatenate([corners, normals, color.take(faces, axis=0), material], axis=-1).astype("f4")
     depth = lens.depth((corners[:, 0] + corners[:, 1] + corners[:, 2]) / 3.0)
     if record.material == "glass":
         return _walls(data, corners, normals, depth, lens)
     if record.material == "shadow":
         # Under everything; in its order by depth it would part each run of lines into hundreds.
         depth = np.full(len(depth), np.finfo(np.float32).max)
-    return [Batch("surface", data, depth, bool(color[..., 3].min() >= 1.0))]
+    return [Batch("surface", data, depth, bool(color[faces, 3].min() >= 1.0))]
 
 
 def _walls(
@@ -202,9 +202,8 @@ def _(record: Image, lens: Lens) -> list[Batch]:
         must = f"(h, w) or (h, w, 3), at most {_LARGEST_IMAGE} each way"
         raise ValueError(f"draw.render: Image.pixels must be of shape {must}; got {np.shape(record.pixels)}")
     sides = [finite(getattr(record, name), f"Image.{name}") for name in ("corner", "across", "up")]
-    levels = np.clip(pixels[::-1], 0.0, 1.0)
-    light = np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
-    texels = np.concatenate([light, np.ones((*light.shape[:2], 1))], axis=2).astype("f2")
+    linear = light(np.clip(pixels[::-1], 0.0, 1.0))
+    texels = np.concatenate([linear, np.ones((*linear.shape[:2], 1))], axis=2).astype("f2")
     middle = sides[0] + 0.5 * (sides[1] + sides[2])
     data = np.concatenate(sides)[None].astype("f4")
     return [Batch("image", data, lens.depth(middle[None]), True, texels, record.smooth)]

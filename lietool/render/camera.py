@@ -9,6 +9,9 @@ from numpy.typing import ArrayLike
 
 Box = tuple[float, float, float, float]
 
+STAND = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""From y upwards, as many files have it, to z upwards."""
+
 
 @dataclass(frozen=True)
 class Camera:

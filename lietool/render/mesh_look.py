@@ -17,7 +17,7 @@ from lietool.render.mesh_lines import CREASE
 from lietool.render.mesh_shading import shading
 from lietool.render.mesh_shadow import shadow as shadow
 from lietool.render.scene import Arrow, Lines, Points, Record, Surface, Tube
-from lietool.render.theme import Color, Mix
+from lietool.render.theme import Color, Mix, light
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -81,6 +81,12 @@ def surface(
     else:
         color = _rows(color, origin)
     return [Surface(V, F, color, N, material, alpha)]
+
+
+def vertex_colors(levels: ArrayLike) -> Array:
+    """Return the colours (n, 4) in which to draw vertices, opaque: levels 0 to 1 (n, 3 or 4) of a file."""
+    linear = light(np.clip(np.asarray(levels, float)[:, :3], 0.0, 1.0))
+    return np.column_stack([linear, np.ones(len(linear))])
 
 
 def outline(

@@ -66,6 +66,11 @@ class Mix:
 Color = str | Mix | np.ndarray
 
 
+def light(levels: np.ndarray) -> np.ndarray:
+    """Return the linear light of levels of sRGB, 0 to 1; of the same shape."""
+    return np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
+
+
 @dataclass(frozen=True)
 class Theme:
     """How a picture looks; which colour a meaning has is said by the tones of `style`.
@@ -87,6 +92,8 @@ class Theme:
     veil : float
         Power by which opacities are taken: on a dark ground the eye sees more of a little light
         than it misses of it on white paper.
+    shade : float
+        The same for shadows, which take light away: of a dark ground there is little to take.
     """
 
     name: str
@@ -96,6 +103,7 @@ class Theme:
     gloss: float = 1.0
     glass: tuple[float, float, float, float] = (0.16, 0.74, 1.08, 0.80)
     veil: float = 1.0
+    shade: float = 1.0
 
     def hex(self, color: str) -> str:
         """Return the value ``#rrggbb`` of a colour; ValueError if it has none."""
@@ -111,11 +119,9 @@ class Theme:
 
     def linear(self, color: str, alpha: float = 1.0) -> np.ndarray:
         """Return a colour as linear red, green, blue and the opacity, not premultiplied; shape (4,)."""
-        levels = self.srgb(color) / 255.0
-        rgb = np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
-        return np.append(rgb, alpha)
+        return np.append(light(self.srgb(color) / 255.0), alpha)
 
-    def rgba(self, color: Color, n: int, alpha: float = 1.0) -> np.ndarray:
+    def rgba(self, color: Color, n: int, alpha: float = 1.0, *, shadow: bool = False) -> np.ndarray:
         """Return the colours of `n` points as linear RGBA, their opacities times `alpha`; shape (n, 4)."""
         if isinstance(color, Mix):
             rows = color.weights @ np.array([self.linear(tone) for tone in color.tones])
@@ -123,11 +129,11 @@ class Theme:
         else:
             rows = self.linear(color) if isinstance(color, str) else np.asarray(color, float)
         rows = np.broadcast_to(rows, (n, 4)).copy()
-        rows[:, 3] = (alpha * rows[:, 3]) ** self.veil
+        rows[:, 3] = (alpha * rows[:, 3]) ** (self.shade if shadow else self.veil)
         return rows
 
 
 BOOK = Theme("book")
-DARK = Theme("dark", ambient=(0.36, 0.60), gloss=0.35, glass=(0.06, 0.60, 1.00, 1.05), veil=1.6)
+DARK = Theme("dark", ambient=(0.36, 0.60), gloss=0.35, glass=(0.06, 0.60, 1.00, 1.05), veil=1.6, shade=0.5)
 PRINT = Theme("print", widths=1.4, ambient=(0.42, 0.64), key=0.60)
 THEMES = {theme.name: theme for theme in (BOOK, DARK, PRINT)}

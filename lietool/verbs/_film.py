@@ -2,7 +2,7 @@
 
 import math
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -152,8 +152,8 @@ def sweep(time: Time) -> list[float]:
 def encode(
     time: Time,
     ending: str,
-    draw: Callable[[float], "Picture"],
-    settle: Callable[[list["Picture"]], list["Picture"]],
+    draw: Callable[[list[float]], Sequence["Picture"]],
+    settle: Callable[[Sequence["Picture"]], list["Picture"]],
     render: Callable[["Picture"], "np.ndarray"],
     title: str,
     said: Mapping[str, str],
@@ -166,7 +166,7 @@ def encode(
         With as many frames as there are to be.
     ending : str
     draw : callable
-        From a moment to its picture.
+        From all moments to their pictures.
     settle : callable
         From the pictures of all moments to those with their labels at rest.
     render : callable
@@ -180,7 +180,7 @@ def encode(
 
     places = sweep(time)
     moments = list(dict.fromkeys(places))
-    drawn = dict(zip(moments, settle([draw(place) for place in moments]), strict=True))
+    drawn = dict(zip(moments, settle(draw(moments)), strict=True))
     shown = [drawn[place] for place in places]
     distinct = {id(picture): picture for picture in shown}
     images: dict[int, np.ndarray] = {}

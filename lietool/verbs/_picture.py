@@ -1,7 +1,7 @@
 """From a figure and its parameters to a file: a picture, or frames over the figure's time."""
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -254,18 +254,21 @@ def _moving(
 ) -> bytes:
     even = ending == ".mp4"
 
-    def page(place: float) -> "Picture":
-        return draw(**values | {time.param: place}).picture
+    def pages(moments: list[float]) -> Sequence["Picture"]:
+        first = draw(**values | {time.param: moments[0]})
+        if first.film is not None:
+            return first.film(moments)
+        return [first.picture, *(draw(**values | {time.param: t}).picture for t in moments[1:])]
 
     def render(picture: "Picture") -> "np.ndarray":
         return _render(picture, quality, even)
 
-    def settle(pictures: list["Picture"]) -> list["Picture"]:
+    def settle(pictures: Sequence["Picture"]) -> list["Picture"]:
         from lietool.render import film
 
         return film.settled(pictures, _store(), closed=time.closed)
 
-    return _film.encode(time, ending, page, settle, render, figure.name, _about(figure, values))
+    return _film.encode(time, ending, pages, settle, render, figure.name, _about(figure, values))
 
 
 def _render(picture: "Picture", quality: Quality, even: bool = False) -> "np.ndarray":

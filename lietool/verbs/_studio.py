@@ -81,11 +81,7 @@ class Item:
     @property
     def program(self) -> str:
         """How to call the program so that it knows this plate."""
-        if self.declared.file.is_relative_to(paths.FIGURES):
-            return "lietool"
-        name = os.environ.get(figure_.PROJECT, "")
-        here = "." if name and os.path.realpath(name) == os.path.realpath(".") else name
-        return shlex.join(["lietool", "--project", here])
+        return program(self.declared.file.is_relative_to(paths.FIGURES))
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -96,6 +92,15 @@ class Item:
     def recorded(self) -> str:
         """The plate's parameters as a golden records them."""
         return _recorded.parameters(self.declared, self.parameters)
+
+
+def program(ours: bool) -> str:
+    """Return how to call the program so that it knows what is ours, or what is the project's."""
+    if ours:
+        return "lietool"
+    name = os.environ.get(figure_.PROJECT, "")
+    here = "." if name and os.path.realpath(name) == os.path.realpath(".") else name
+    return shlex.join(["lietool", "--project", here])
 
 
 def items(wanted: Sequence[str] = (), *, everything: bool = False) -> list[Item]:

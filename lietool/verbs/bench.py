@@ -13,6 +13,7 @@ import click
 
 from lietool.verbs import (
     _bench_accuracy,
+    _bench_class,
     _bench_deform,
     _bench_interp,
     _bench_pairs,
@@ -45,6 +46,7 @@ for _subcommand in (
     _bench_deform.deform_work,
     _bench_deform.meshes,
     _bench_peers.peers,
+    _bench_class.class_,
 ):
     command.add_command(_subcommand)
 

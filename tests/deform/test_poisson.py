@@ -305,3 +305,19 @@ def test_bad_meshes_are_refused_by_name(changes, message):
 def test_bad_moves_are_refused_by_name(call, message):
     with pytest.raises(ValueError, match=rf"^{message}[^\n]*$"):
         call()
+
+
+def test_what_joins_the_faces_may_be_another():
+    A = some(4)
+    values = np.concatenate([V[PINS], moved(A)[HANDLE]])
+    result = poisson.solve(PREPARED, A[None])
+    np.testing.assert_allclose(poisson.join(PREPARED, result.guide, values), result.vertices, atol=1e-12)
+
+    def only_held(prepared, guide, places):
+        found = np.zeros_like(prepared.vertices)
+        found[prepared.factor.fixed] = places
+        return found
+
+    other = poisson.solve(PREPARED, A[None], joined=only_held).vertices
+    np.testing.assert_array_equal(other[HANDLE], result.vertices[HANDLE])
+    assert not other[8:-8].any()

@@ -29,6 +29,13 @@ def test_at_a_probe_it_has_all_weight():
     np.testing.assert_allclose(both, [[0.5, 0.5, 0.0]], atol=1e-15)
 
 
+def test_shepard_is_the_inverse_distance_as_a_partition_of_unity():
+    w = weights.shepard(POINTS, CENTRES, 2.5)
+    want = weights.distances(POINTS, CENTRES) ** -2.5
+    np.testing.assert_allclose(w, want / want.sum(axis=1, keepdims=True), rtol=1e-12)
+    np.testing.assert_allclose(weights.shepard(CENTRES, CENTRES), np.eye(len(CENTRES)), atol=1e-15)
+
+
 def test_what_is_infinitely_far_has_no_weight():
     r = np.array([[1.0, np.inf], [np.inf, np.inf]])
     np.testing.assert_array_equal(weights.inverse_distance(r), [[1.0, 0.0], [0.0, 0.0]])

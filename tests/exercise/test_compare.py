@@ -73,3 +73,9 @@ def test_of_a_batch_the_worst_entry_is_told():
     assert texts.beside(got, want)[1].startswith("[11] [[nan")
     wanted, came = texts.beside((1.0, got), (2.0, want))
     assert wanted.startswith("2; [11]") and came.startswith("1; [11]")
+
+
+def test_what_differs_little_is_told_with_more_digits():
+    assert texts.beside(np.array([1.0, 2.00000007]), np.array([1.0, 2.0])) == ("[1, 2]", "[1, 2.00000007]")
+    assert texts.beside(1.0 + 1e-9, 1.0) == ("1", "1.000000001")
+    assert texts.beside(1.0 + 1e-14, 1.0) == ("1", "1.00000000000001")

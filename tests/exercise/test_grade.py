@@ -253,3 +253,29 @@ def test_an_input_is_not_spoilt_for_the_next():
     exercise = replace(EXERCISE, mistakes=(Mistake("spoils", "It adds 1.", {"add": spoils}),))
     assert diagnose.sentences(exercise, [seen]) == ("It adds 1.",)
     assert (seen.case.args[0] == 0.0).all()
+
+
+def test_who_cannot_take_batches_is_told_of_another_mistake():
+    def one_at_a_time(x, y):
+        if np.ndim(x):
+            raise TypeError("only one")
+        return x + y
+
+    values = [Case("some", (float(k), 1.0), "add") for k in range(3)]
+    exercise = replace(EXERCISE, checks=(Check("values", 1, cases=lambda rng: [*values, *_cases(rng)]),))
+    made = grade.judge(exercise, Inline(add=one_at_a_time), picture=False)
+    assert made.diagnosis == ("This is x + y.",)
+    one_at_a_time.__code__ = (lambda x, y: x + 2.0 * y if not np.ndim(x) else None.x).__code__
+    assert grade.judge(exercise, Inline(add=one_at_a_time), picture=False).diagnosis == ()
+
+
+def test_a_mistake_that_is_nearly_right_is_not_told_where_all_is_right():
+    nearly = Mistake("nearly", "This is a little more.", {"add": lambda x, y: right(x, y) + 5e-8})
+    exercise = replace(EXERCISE, mistakes=(nearly,))
+
+    def add(x, y):
+        return right(x, y) if np.isfinite(x).all() else 0.0 * np.asarray(x)
+
+    assert grade.judge(exercise, Inline(add=lambda x, y: right(x, y) + 5e-8), picture=False).diagnosis
+    batches = Inline(add=lambda x, y: right(x, y) if not np.ndim(x) else np.zeros(2))
+    assert grade.judge(exercise, batches, picture=False).diagnosis == ()

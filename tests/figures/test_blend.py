@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from scipy.linalg import expm, logm
+from scipy.spatial import KDTree
 
 from lietool import figure, paths
 from lietool.cli import command
 from lietool.deform import controller, ways
 from lietool.lie import polar, so3
 from lietool.mesh import solids, surface, surface_io
+from lietool.render.scene import Surface
 
 WAYS = list(ways.WAYS)
 
@@ -179,6 +181,23 @@ def write(name: str, V: np.ndarray, F: np.ndarray, **more: object) -> None:
     Path(name).write_bytes(surface_io.encode(mesh, Path(name).suffix))
 
 
+def surfaces(rest: str, *targets: str, view: str = "ways") -> list[Surface]:
+    """What is drawn of a user's files, with the rest as the blended shape."""
+    files = {"rest": Path(rest), "targets": tuple(map(Path, targets))}
+    views = load().draw(**files, view=view, weights=(0.0,)).picture.views
+    return [r for one in views for r in one.records if isinstance(r, Surface)]
+
+
+def colours_at(drawn: Surface, V: np.ndarray) -> np.ndarray:
+    """The levels of sRGB (n, 3) in which a surface is drawn at points, at each of which it has a vertex."""
+    away, nearest = KDTree(drawn.vertices).query(V)
+    assert away.max() < 1e-6
+    rgba = np.asarray(drawn.color)[nearest]
+    assert (rgba[:, 3] == 1.0).all()
+    light = rgba[:, :3]
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1.0 / 2.4) - 0.055)
+
+
 def run(*words: str):
     result = CliRunner().invoke(command, ["blend", *words])
     if result.exception is not None and not isinstance(result.exception, SystemExit):
@@ -217,6 +236,28 @@ class TestOwn:
         together = np.zeros((len(rest.vertices), 3))
         together[corners] = found.vertices
         assert found.vertices == pytest.approx(together[corners], abs=1e-12)
+
+    @pytest.mark.parametrize("view", ["ways", "shape"])
+    def test_its_own_colours_are_drawn(self, work, view):
+        rest, tall = surface_io.read("rest.obj"), surface_io.read("tall.obj")
+        # As a file for games has it, each corner a vertex, and not in the order in which they become one.
+        corners, F = rest.faces.ravel(), np.arange(rest.faces.size).reshape(-1, 3)
+        low, high = rest.vertices.min(axis=0), rest.vertices.max(axis=0)
+        red = (rest.vertices - low) / (high - low)
+        blue = 1.0 - 0.5 * red
+        write("red.ply", rest.vertices[corners], F, colours=red[corners])
+        write("tall.ply", tall.vertices[corners], F)
+        write("blue.ply", tall.vertices[corners], F, colours=blue[corners])
+        seen = surfaces("red.ply", "tall.ply", "blue.ply", view=view)
+        painted = [one for one in seen if isinstance(one.color, np.ndarray)]
+        if view == "shape":
+            assert len(painted) == 1
+        else:
+            # The rest, what is blended by three ways, and of the targets that which has colours.
+            assert len(painted) == 5
+            assert colours_at(painted[1], tall.vertices) == pytest.approx(blue, abs=3e-3)
+        assert colours_at(painted[0], rest.vertices) == pytest.approx(red, abs=3e-3)
+        assert not any(isinstance(one.color, np.ndarray) for one in surfaces("rest.obj", "tall.obj"))
 
     def test_turned_faces_are_told_beside_the_file(self, work):
         done = run("rest.obj", "tall.obj", "fat.obj", "--weights", "3,-2", "-o", "o.obj")

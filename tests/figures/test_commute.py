@@ -134,6 +134,17 @@ class TestRigid:
         for order in ("stages", "other_order"):
             assert np.abs(numbers[order][2][:2, :2] - R).max() < 1e-15
 
+    def test_it_shows_the_functions_that_it_is_given(self):
+        def commuting(p, q):
+            """The product of dual numbers that commute, without the conjugate of (2.38)."""
+            (a, b), (c, d) = ((x[..., ::2] + 1j * x[..., 1::2]).T for x in np.broadcast_arrays(p, q))
+            product = np.stack([a * c, b * c + a * d], axis=-1)
+            return np.stack([product.real, product.imag], axis=-1).reshape(*np.shape(a.T), 4)
+
+        drawn = figure.load("transform2", (paths.FIGURES,)).draw_with({"multiply": commuting}, kind="rigid")
+        ends = [drawn.numbers[order][2] for order in ("stages", "other_order")]
+        assert np.abs(ends[0] - ends[1]).max() < 1e-15
+
     @pytest.mark.parametrize("params", [{"angle": 0.0}, {"angle": 360.0}, {"b": (0.0, 0.0)}])
     def test_where_the_order_does_not_matter_it_says_so(self, params):
         assert "two orders, the same end" in texts("transform2", kind="rigid", **params)

@@ -57,6 +57,16 @@ class TestSvd:
 
 
 class TestPolar:
+    def test_it_shows_the_function_that_it_is_given(self):
+        drawn = figure.load("decompose", (paths.FIGURES,)).draw_with(
+            {"polar": lambda A: (np.linalg.inv(A.T), A.T @ A)}, kind="polar"
+        )
+        R, S = drawn.numbers["factors"]
+        A = drawn.numbers["A"]
+        assert np.abs(S - A.T @ A).max() == 0.0
+        assert np.abs(drawn.numbers["shown"][-1] - A).max() < 1e-15
+        assert np.abs(R - np.linalg.inv(A.T)).max() < 1e-15
+
     @pytest.mark.parametrize("kind", ["polar", "polar-left"])
     def test_the_factors_multiply_to_the_matrix(self, kind, matrix):
         first, second = shown(kind=kind, matrix=matrix)["factors"]

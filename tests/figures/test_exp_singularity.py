@@ -12,6 +12,12 @@ def drawn(**params):
     return figure.load("exp-singularity", (paths.FIGURES,)).draw(**params).numbers
 
 
+def tubes(drawing):
+    """The points of the way in the half sphere, which is the last of the pictures."""
+    view = drawing.picture.views[3]
+    return np.concatenate([x.points for x in view.records if isinstance(x, scene.Tube)])
+
+
 class TestStages:
     def test_the_quaternion_is_of_the_rotation(self, plate):
         shown = plate("B4.2").numbers
@@ -36,8 +42,24 @@ class TestStages:
         arrows = [r for r in picture.views[3].records if isinstance(r, scene.Arrow)]
         assert len(arrows) == heads
 
+    def test_it_shows_the_exponential_map_that_it_is_given(self):
+        exp_singularity = figure.load("exp-singularity", (paths.FIGURES,))
+        first_order = exp_singularity.draw_with({"exp": lambda x: np.eye(3) + so3.hat(x)})
+        way = tubes(first_order)
+        assert np.abs(np.linalg.norm(tubes(exp_singularity.draw()), axis=-1) - 1.0).max() < 1e-14
+        # |I + X|, which grows with the angle, as the distance from the middle of the sphere.
+        assert np.linalg.norm(way, axis=-1).max() > 5.0
+
 
 class TestPaths:
+    def test_they_show_the_logarithm_that_they_are_given(self):
+        exp_singularity = figure.load("exp-singularity", (paths.FIGURES,))
+        params = exp_singularity.plate_params("B4.2b")
+        shown = exp_singularity.draw_with({"log": lambda R: 0.5 * so3.log(R)}, **params).numbers
+        right = exp_singularity.draw(**params).numbers
+        # As far as the half turn, from which on it comes back.
+        assert shown["lift_through"][:60] == pytest.approx(0.5 * right["lift_through"][:60], abs=1e-12)
+
     def test_through_the_identity_it_jumps_by_two_pi(self, plate):
         shown = plate("B4.2b").numbers
         steps = np.linalg.norm(np.diff(shown["lift_through"], axis=0), axis=-1)

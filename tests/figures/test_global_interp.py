@@ -13,6 +13,7 @@ from lietool import figure, paths
 from lietool.cli import command
 from lietool.interp import forms
 from lietool.mesh import io, shapes, topology
+from lietool.render.scene import Surface
 
 GLOBAL = figure.load("global-interp", (paths.FIGURES,))
 MARKS, MORPH, STAGES, SWALLOW = (
@@ -166,6 +167,24 @@ class TestLargeRotations:
         shown = plate("B6.6").numbers
         assert np.abs(shown["theta"]).max() <= np.pi
         assert shown["flipped"].max() >= 3 and shown["least_det"].min() < -0.2
+
+    def test_what_is_seen_larger_stands_still_in_a_film(self, monkeypatch):
+        loupe, seen = sys.modules["lietool.figures.ch6._morph_loupe"], []
+        draw = loupe.draw
+        monkeypatch.setattr(loupe, "draw", lambda *args: seen.append((args[0], draw(*args))) or seen[-1][1])
+        params = GLOBAL.plate_params("B6.6")
+        for t in np.linspace(0.0, 1.0, 9):
+            GLOBAL.draw(**params | {"t": float(t)})
+        assert len(seen) == 9
+        first = seen[0][0]
+        for one, records in seen:
+            assert one.k == 2 and np.array_equal(one.near, first.near)
+            assert (*one.spot, one.radius, one.scale) == (*first.spot, first.radius, first.scale)
+            for record in records:
+                if isinstance(record, Surface):
+                    far = np.linalg.norm(np.asarray(record.vertices)[:, :2] - one.spot, axis=1)
+                    # Of a triangle that the ring cuts, pieces reach a little beyond.
+                    assert far.max() < 1.1 * one.radius
 
     def test_e_r_with_the_same_input_does_not(self, plate):
         shown = plate("B6.8").numbers

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm, polar
 
 from lietool import figure, paths
-from lietool.lie import affine
+from lietool.lie import affine, se3
 from lietool.render.scene import Label
 
 
@@ -35,6 +35,19 @@ class TestNumbers:
         stretched[:3, :3] = S
         assert shown["A"] == pytest.approx(expm(X) @ stretched, abs=1e-12)
         assert shown["d"] == pytest.approx(expm(X)[:3, 3], abs=1e-12)
+
+    def test_it_shows_the_maps_of_se3_that_it_is_given(self):
+        def straight(x):
+            T = se3.exp(x)
+            T[..., :3, 3] = x[..., 3:]
+            return T
+
+        parametrise = figure.load("parametrise", (paths.FIGURES,))
+        shown = parametrise.draw_with({"exp": straight, "log": lambda T: 0.5 * se3.log(T)}).numbers
+        right = parametrise.draw().numbers
+        assert shown["d"] == pytest.approx(shown["parameters"][3:6])
+        assert shown["principal"][:3] == pytest.approx(0.5 * right["principal"][:3])
+        assert not shown["same"] and right["same"]
 
     def test_the_other_map_adds_the_translation_last(self, plate):
         shown = plate("B7.1c").numbers
@@ -92,6 +105,13 @@ class TestOtherFunctions:
         numbers, _ = self.given(phi_se=affine.phi_so, psi_se=affine.psi_so)
         assert numbers["d"] == pytest.approx([0.0, 1.3, 0.7])
 
+    def test_exp_and_log_of_rigid_motions_make_the_map(self):
+        found, texts = self.given(exp=lambda x: se3.exp(x), log=lambda T: se3.log(T))
+        right, _ = self.given()
+        for name in ("A", "R", "S", "d", "principal"):
+            assert found[name] == pytest.approx(right[name], abs=1e-12)
+        assert r"\neq" not in texts
+
 
 class TestPicture:
     @pytest.mark.parametrize(
@@ -122,6 +142,16 @@ class TestPicture:
         assert r"\mathbf{x}'" not in page()
         assert r"\mathbf{x}'" in page(angle=250.0) and r"\mathbf{l}'" in page(angle=250.0)
         assert r"\mathbf{l}'" not in page(angle=250.0, map="phi_so")
+
+    @pytest.mark.parametrize("kind", ["phi_se", "phi_so"])
+    def test_a_film_is_seen_in_one_way(self, kind):
+        angles = [0.0, 80.0, 185.0, 350.0]
+        pictures = drawn(map=kind).film(angles)
+        first = [view.camera for view in pictures[0].views]
+        for picture, angle in zip(pictures, angles, strict=True):
+            assert [view.camera for view in picture.views] == first
+            still = drawn(map=kind, angle=angle).picture
+            assert [len(v.records) for v in picture.views] == [len(v.records) for v in still.views]
 
     def test_no_axis_is_refused_by_name(self):
         with pytest.raises(ValueError, match="axis must be different from 0"):

@@ -1,6 +1,7 @@
 """Figure 4 of Kaji and Ochiai: paths through keys, against SciPy's splines and its matrix logarithm."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from lietool import figure, paths
 from lietool.mesh import surface_io
 from lietool.mesh.surface import Mesh
+from lietool.render import style
 from lietool.render.scene import Label, Surface
 
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
@@ -190,3 +192,21 @@ def test_a_mesh_may_lie_on_its_back(mesh, keys, tmp_path):
     assert len(seen[0]) == len(seen[1]) > 6
     for standing, stood in zip(*seen, strict=True):
         assert stood == pytest.approx(standing, abs=1e-6)
+
+
+def test_its_own_colours_are_drawn_but_not_between_the_keys_nor_inside_out(mesh, tmp_path):
+    bare = surface_io.read(mesh)
+    colours = np.array([[0.2, 0.4, 0.6], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0], [0.6, 0.2, 0.0]])
+    file = tmp_path / "coloured.ply"
+    file.write_bytes(surface_io.encode(replace(bare, colours=colours), ".ply"))
+    own, plain = (
+        [r.color for view in drawn(mesh=path).picture.views for r in view.records if isinstance(r, Surface)]
+        for path in (file, mesh)
+    )
+    light = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    painted = [color for color in own if isinstance(color, np.ndarray)]
+    for color in painted:
+        assert color[:, :3] == pytest.approx(light, abs=5e-3) and (color[:, 3] == 1.0).all()
+    kept = (style.BETWEEN, style.WRONG)
+    assert [isinstance(color, str) for color in own] == [color in kept for color in plain]
+    assert painted and {style.BETWEEN, style.WRONG} <= {color for color in own if isinstance(color, str)}

@@ -120,6 +120,12 @@ class TestTheme:
             assert found == pytest.approx([0.0, 0.25**theme.veil, 1.0])
         assert DARK.veil > BOOK.veil == PRINT.veil == 1.0
 
+    def test_on_a_dark_ground_shadows_are_stronger(self):
+        for theme in THEMES.values():
+            found = theme.rgba(style.fade(style.SHADOW, [0.0, 0.25, 1.0]), 3, shadow=True)[:, 3]
+            assert found == pytest.approx([0.0, 0.25**theme.shade, 1.0])
+        assert DARK.shade < BOOK.shade == PRINT.shade == 1.0
+
     def test_linear_light(self):
         assert BOOK.linear("#ffffff").tolist() == [1, 1, 1, 1]
         assert BOOK.linear("#000000", 0.5).tolist() == [0, 0, 0, 0.5]

@@ -10,7 +10,7 @@ const viewer = (() => {
   const host = one("#_viewer"), stage = one(".stage", host), panes = all(".pane", stage);
   const worlds = all(".world", stage), layer = {};
   for (const part of ["expected", "actual", "difference", "ssim"]) layer[part] = one(`.${part}`, worlds[0]);
-  const loupe = one(".loupe", host), divider = one(".divider", stage);
+  const called = host.dataset, loupe = one(".loupe", host), divider = one(".divider", stage);
   const GAINS = [1, 2, 4, 8, 16, 32, 64, 128], MODES = ["swipe", "blink", "side", "difference", "ssim"];
   const STEPS = [0.25, 0.5, 1, 2, 3, 4, 6, 8, 12, 16, 24], GHOST = 0.15, SPAN = 17, PERIOD = 700;
   const view = { mode: "swipe", split: 50, gain: 4, boxes: true, loupe: true, scale: null, x: 0, y: 0, point: null, place: -1 };
@@ -181,7 +181,7 @@ const viewer = (() => {
     second = to;
     layer.actual.style.visibility = second ? "" : "hidden";
     panes[0].classList.toggle("second-shown", second);
-    one(".left", panes[0]).textContent = second ? "actual" : "expected";
+    one(".left", panes[0]).textContent = second ? called.actual : called.expected;
   };
   const running = () => timer !== 0;
   const run = (on) => {
@@ -200,11 +200,11 @@ const viewer = (() => {
     else layer.expected.after(layer.actual);
     layer.actual.style.visibility = "";
     panes[0].classList.remove("second-shown");
-    const tags = { swipe: ["expected", "actual"], side: ["expected", ""], difference: ["difference", ""], ssim: ["1 − SSIM over expected", ""] };
+    const tags = { swipe: [called.expected, called.actual], side: [called.expected, ""], difference: ["difference", ""], ssim: [`1 − SSIM over ${called.expected}`, ""] };
     const [left, right] = tags[now] ?? [available.length ? "" : about.only, ""];
     one(".left", panes[0]).textContent = left;
     one(".right", panes[0]).textContent = right;
-    one(".left", panes[1]).textContent = "actual";
+    one(".left", panes[1]).textContent = called.actual;
     for (const button of all("[data-mode]", host).filter((b) => b.matches("button"))) {
       button.setAttribute("aria-pressed", String(button.dataset.mode === now));
       button.disabled = !available.includes(button.dataset.mode);
