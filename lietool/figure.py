@@ -12,6 +12,7 @@ import re
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -207,6 +208,16 @@ def _tree(file: Path) -> ast.Module:
 
 
 def _outline(file: Path) -> _Outline:
+    try:
+        about = file.stat()
+    except OSError as error:
+        raise FigureError(f"{file}: {error}") from None
+    return _outlined(file, about.st_mtime_ns, about.st_size)
+
+
+# All files are asked for each plate that is looked up.
+@cache
+def _outlined(file: Path, modified: int, size: int) -> _Outline:
     for node in _tree(file).body:
         decorator = _decorator(node)
         if decorator and isinstance(node, ast.FunctionDef) and node.name == file.stem:
