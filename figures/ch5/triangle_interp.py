@@ -162,9 +162,9 @@ def triangle_interp(
     ] = 0.0,
     t: Annotated[float, Param("the moment that is marked", low=-1.5, high=2.5)] = 0.5,
     *,
-    affine_map: Library = maps.AFFINE_MAP,
-    arap: Library = maps.ARAP,
-    logexp: Library = maps.LOGEXP,
+    affine_map: Library = Library("lietool.interp.triangle.affine_map"),
+    arap: Library = Library("lietool.interp.triangle.arap"),
+    logexp: Library = Library("lietool.interp.triangle.logexp"),
 ) -> Drawing:
     """Between two triangles: four homotopies of the map that carries one to the other.
 

@@ -7,7 +7,7 @@ from lietool.figure import Drawing, Library, Param, Plate, Time, figure
 
 from . import _morph, _pairs
 from . import _morph_pages as pages
-from ._morph_form import MATRIX, PULL, SIMILARITY, Forms
+from ._morph_form import Forms
 
 _MOVING = ("stage", "local", "global", "morph", "frames")
 _WHOLE = ("stage", "global", "morph", "frames")
@@ -270,9 +270,9 @@ def global_interp(
         Path | None, Param("the shape that it turns into, of the same kind", positional=2)
     ] = None,
     *,
-    matrix: Library = MATRIX,
-    pull: Library = PULL,
-    similarity: Library = SIMILARITY,
+    matrix: Library = Library("lietool.interp.forms.matrix"),
+    pull: Library = Library("lietool.interp.forms.pull"),
+    similarity: Library = Library("lietool.interp.forms.similarity"),
 ) -> Drawing:
     """Two triangulated shapes and the ways between them, from the local maps to the whole shape.
 
