@@ -59,7 +59,7 @@ class Figure:
         """
         return self.draw_with({}, **params)
 
-    def draw_with(self, functions: Mapping[str, Callable[..., Any]], **params: object) -> Drawing:
+    def draw_with(self, functions: Mapping[str, Callable[..., Any]], /, **params: object) -> Drawing:
         """Draw the figure with functions of one's own in place of those of the library that it shows.
 
         Parameters

@@ -297,6 +297,8 @@ def test_a_function_may_be_passed_in(project: Path) -> None:
     tiny = figures.load("tiny")
     assert tiny.draw(x=9.0).numbers == {"y": 3.0}
     assert tiny.draw_with({"root": lambda x: -x}, x=9.0).numbers == {"y": -9.0}
+    with pytest.raises(ValueError, match="no parameter 'functions'"):
+        tiny.draw(functions=1.0)
     with pytest.raises(ValueError, match=r"tiny.draw_with: it takes no function 'rot'\. Nearest: root"):
         tiny.draw_with({"rot": abs})
 

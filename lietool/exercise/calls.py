@@ -1,4 +1,4 @@
-"""A student's functions as laws and figures call them: what comes back has the shape that it should have."""
+"""A student's functions as laws and figures call them: what comes back is as the right function gives it."""
 
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -19,6 +19,9 @@ class Caller(Protocol):
 
 class Functions:
     """The functions of a submission as attributes: ``f.rotation(axis, angle)``.
+
+    What they return is of double precision and has the shape that it should have: a law or a figure need not
+    ask whether somebody has returned integers.  Where it is of another shape `compare.UnlikeError` is raised.
 
     Parameters
     ----------
@@ -47,12 +50,12 @@ class Functions:
                 # What other functions of the student gave may be nothing that the right one takes.
                 return got
             try:
-                compare.apart(got, wanted)
+                made = compare.doubles(got, wanted)
             except compare.UnlikeError as error:
                 raise compare.UnlikeError(f"{function.name}: {error}") from None
-            if self._finite and not _is_finite(got):
+            if self._finite and not _is_finite(made):
                 raise compare.UnlikeError(f"{function.name}: it returned numbers that are not finite")
-            return got
+            return made
 
         return call
 

@@ -1,4 +1,4 @@
-"""What a function needs of the cells of a notebook: a file as it would be without plots and prints."""
+"""What a function needs of a file, or of the cells of a notebook: all of it but tests, plots and prints."""
 
 import ast
 from collections.abc import Iterator, Sequence
@@ -18,7 +18,23 @@ class _Statement:
 
 
 def needed(cells: Sequence[str], wanted: Sequence[str]) -> str:
-    """Return the definitions, imports and assignments of a notebook that some functions need.
+    """Return a file with what some functions need of a notebook.
+
+    Parameters
+    ----------
+    cells, wanted : sequence of str
+        As of `statements`.
+
+    Returns
+    -------
+    str
+        A file in which each name has the value that it has last.
+    """
+    return "".join(f"{text}\n" for text in statements(cells, wanted))
+
+
+def statements(cells: Sequence[str], wanted: Sequence[str]) -> list[str]:
+    """Return the definitions, imports and assignments that some functions need, as they are written.
 
     Parameters
     ----------
@@ -29,29 +45,28 @@ def needed(cells: Sequence[str], wanted: Sequence[str]) -> str:
 
     Returns
     -------
-    str
-        A file in which each name has the value that it has last.  Calls for their own sake, as of `print`,
-        are left out, and so is what is no Python.
+    list of str
+        In their order.  Calls for their own sake, as of `print`, are left out, and so is what is no Python.
     """
-    statements = [statement for cell in cells for statement in _statements(cell)]
+    found = [statement for cell in cells for statement in _statements(cell)]
     kept: set[int] = set()
-    todo = {(name, len(statements)) for name in wanted}
+    todo = {(name, len(found)) for name in wanted}
     seen = set(todo)
     while todo:
-        for i in _giving(statements, *todo.pop()):
+        for i in _giving(found, *todo.pop()):
             if i not in kept:
                 kept.add(i)
                 # What the statement itself reads it has from before; a function looks when it is called.
-                new = {(name, k) for name in statements[i].uses for k in (i, len(statements))} - seen
+                new = {(name, k) for name in found[i].uses for k in (i, len(found))} - seen
                 seen |= new
                 todo |= new
-    return "".join(f"{statements[i].text}\n" for i in sorted(kept))
+    return [found[i].text for i in sorted(kept)]
 
 
-def _giving(statements: Sequence[_Statement], name: str, before: int) -> Iterator[int]:
+def _giving(found: Sequence[_Statement], name: str, before: int) -> Iterator[int]:
     """Yield what gives a name its value: where it was last set, and what has changed it since."""
     for i in range(before - 1, -1, -1):
-        statement = statements[i]
+        statement = found[i]
         if name in statement.changes or _EVERYTHING in statement.binds:
             yield i
         elif name in statement.binds:

@@ -1,6 +1,7 @@
 """Which typical mistake explains what a student's function returned."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -17,6 +18,7 @@ _NEAR = 1e-7
 _ENOUGH = 3
 # Of several mistakes that explain it, those that are told.
 _MOST = 2
+_BLANK = "{} nan only, as the file does that you started with: write {}."
 REFUSED = object()
 """Stands for the result of a function that raised an error."""
 
@@ -41,7 +43,8 @@ def sentences(exercise: Exercise, seen: Sequence[Seen]) -> tuple[str, ...]:
 
     A mistake does if it gives what the student's function gives for all inputs, and does not for all of
     them give what is right.  Inputs that the student's function fails for say nothing, where there are
-    others: who cannot take batches may have made a mistake besides.
+    others: who cannot take batches may have made a mistake besides.  Who fails for all has made none that
+    can be known.
 
     Parameters
     ----------
@@ -55,31 +58,43 @@ def sentences(exercise: Exercise, seen: Sequence[Seen]) -> tuple[str, ...]:
     tuple of str
         At most two, a sentence or two each; none where all is right, or nothing explains it.
     """
-    wrong = {x.case.function for x in seen if not _same(exercise, x.case.function, x.got, x.want)}
-    if not wrong:
-        return ()
-    if all(_is_blank(x.got) for x in seen):
-        return ("It returns nan only, as the file does that you started with: write the function.",)
+    with np.errstate(all="ignore"):
+        wrong = {x.case.function for x in seen if not _same(exercise, x.case.function, x.got, x.want)}
+        if not wrong:
+            return ()
+        blank = wrong - {x.case.function for x in seen if not _is_blank(x.got)}
+        if blank == {x.case.function for x in seen}:
+            return (_BLANK.format("It returns", "the function"),)
+        told = _recognised(exercise, seen, wrong - blank, _MOST - bool(blank))
+        if blank:
+            told.append(_BLANK.format(f"{' and '.join(sorted(blank))} gave", "what is left"))
+        return tuple(told)
+
+
+def _recognised(exercise: Exercise, seen: Sequence[Seen], wrong: Collection[str], most: int) -> list[str]:
+    """What is said of at most so many mistakes that explain these wrong functions."""
     told: list[str] = []
     for mistake in _wrongs(exercise):
         mine = [x for x in seen if x.case.function in mistake.functions]
-        if wrong.isdisjoint(mistake.functions) or mistake.says in told:
+        if not any(name in wrong for name in mistake.functions) or mistake.says in told:
             continue
         if mine and _explains(exercise, mistake, mine):
             told.append(mistake.says)
-            if len(told) == _MOST:
+            if len(told) == most:
                 break
-    return tuple(told)
+    return told
 
 
 def _explains(exercise: Exercise, mistake: _Wrong, seen: Sequence[Seen]) -> bool:
     answered = [x for x in seen if x.got is not REFUSED]
+    if not answered:
+        return False
     differs = False
     for x in answered if len(answered) >= _ENOUGH else seen:
         name = x.case.function
         try:
-            with np.errstate(all="ignore"):
-                made = mistake.functions[name](*_copied(x.case.args))
+            # It may spoil them.
+            made = mistake.functions[name](*deepcopy(x.case.args))
         except Exception:
             made = REFUSED
         if not _same(exercise, name, x.got, made, _NEAR):
@@ -129,7 +144,3 @@ def _is_blank(value: Any) -> bool:
         return False
     parts = value if isinstance(value, tuple | list) else (value,)
     return all(np.asarray(part).dtype.kind in "fc" and bool(np.isnan(part).all()) for part in parts)
-
-
-def _copied(args: tuple[Value, ...]) -> tuple[Value, ...]:
-    return tuple(x.copy() if isinstance(x, np.ndarray) else x for x in args)

@@ -93,7 +93,8 @@ def statement(exercise: Exercise) -> str:
     """Return what is to be done, in markdown; it shows the plate as `plate_file` calls it."""
     # The first line of a docstring is its title, and the exercise has its own.
     _, _, text = exercise.statement.partition("\n")
-    rows = [f"| {check.title} | {check.points} |" for check in exercise.checks]
+    # |q| in a title is no end of a cell.
+    rows = [f"| {check.title.replace('|', chr(92) + '|')} | {check.points} |" for check in exercise.checks]
     rows.append(
         f"| the picture {exercise.picture.plate}, drawn with your function | {exercise.picture.points} |"
     )

@@ -147,7 +147,9 @@ def solution(exercise: Exercise) -> str:
     wanted = {function.name for function in exercise.functions}
     imports, helpers, written = [], [], []
     for node in tree.body:
-        text = "\n".join(lines[node.lineno - 1 : node.end_lineno])
+        # What decorates a helper belongs to it.
+        first = min([node.lineno, *(x.lineno for x in getattr(node, "decorator_list", ()))])
+        text = "\n".join(lines[first - 1 : node.end_lineno])
         if isinstance(node, ast.FunctionDef) and node.name in wanted:
             # The docstring stays, it says what to write.
             told = (node.body[0].end_lineno or node.lineno) - node.lineno + 1

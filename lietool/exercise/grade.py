@@ -10,7 +10,7 @@ import numpy as np
 from lietool.exercise import compare, diagnose, texts
 from lietool.exercise.calls import Caller, Functions
 from lietool.exercise.outcome import Finding, Graded, Outcome, Shown
-from lietool.exercise.record import Case, Check, Claim, Exercise
+from lietool.exercise.record import Case, Check, Claim, Exercise, ExerciseError, Function, Value
 from lietool.exercise.student import Limits, Student, Trouble
 
 # A function that has run out of its time twice will do so again: what is left is lost without waiting.
@@ -53,7 +53,9 @@ def grade(
     Raises
     ------
     ExerciseError
-        If the plate of the exercise cannot be had.
+        If the plate of the exercise cannot be had, or a check or the picture tries nothing.
+    NoRendererError
+        If there is to be a picture, and nothing here can draw it.
     """
     names = [function.name for function in exercise.functions]
     with Student(
@@ -83,11 +85,12 @@ def judge(exercise: Exercise, student: Caller, *, seed: int = 0, picture: bool =
 
     Raises
     ------
-    ExerciseError
+    ExerciseError, NoRendererError
         As `grade`.
     """
     trial = _Trial(exercise, student, seed)
     outcomes = [trial.check(index, check) for index, check in enumerate(exercise.checks)]
+    outcomes = [trial.with_merit(*each) for each in zip(exercise.checks, outcomes, strict=True)]
     shown = None
     if picture:
         outcome, shown = trial.picture()
@@ -103,32 +106,53 @@ class _Trial:
         self.exercise, self.student, self.seed = exercise, student, seed
         self.seen: list[diagnose.Seen] = []
         self._late: dict[str, int] = {}
+        self._calls = 0
+        self._answered: set[str] = set()
+        self._to_refuse: dict[Check, set[str]] = {}
 
     def call(self, function: str, *args: Any) -> Any:
         """Call a function of the student, unless it has run out of its time too often; raises Trouble."""
+        self._calls += 1
         if self._late.get(function, 0) >= PATIENCE:
             raise Trouble("time", f"{function} was not tried again: it ran out of its time {PATIENCE} times")
         try:
-            return self.student.call(function, *args)
+            got = self.student.call(function, *args)
         except Trouble as trouble:
             if trouble.kind == "time":
                 self._late[function] = self._late.get(function, 0) + 1
             raise
+        self._answered.add(function)
+        return got
 
     def check(self, index: int, check: Check) -> Outcome:
         """Try one check."""
         rng = np.random.default_rng([self.seed, self.exercise.number, index])
-        trouble = ""
+        trouble, before = "", self._calls
         if check.cases is not None:
-            findings = [self._case(case) for case in check.cases(rng)]
+            findings = [self._case(check, case) for case in check.cases(rng)]
         else:
             findings, trouble = self._law(check, rng)
+        if not trouble and self._calls == before:
+            raise ExerciseError(
+                f"exercise {self.exercise.name}: check {check.title!r} calls no function, and anybody would "
+                "have its points. Let it try one"
+            )
+        if not trouble and not findings:
+            trouble = "it has nothing to say of what your function returns"
         points = check.points if findings and not trouble and all(x.passed for x in findings) else 0
         kind = "law" if check.cases is None else "cases"
         return Outcome(check.title, kind, points, check.points, tuple(findings), trouble)
 
-    def _case(self, case: Case) -> Finding:
-        function = self.exercise.function(case.function)
+    def with_merit(self, check: Check, outcome: Outcome) -> Outcome:
+        """Return what came of a check, without points where all was refused by who refuses whatever comes."""
+        blind = sorted(self._to_refuse.get(check, set()) - self._answered)
+        if not blind or not outcome.points:
+            return outcome
+        says = f"{' and '.join(blind)} returned nothing for any input: what is right must not be refused"
+        return replace(outcome, points=0, trouble=says)
+
+    def _case(self, check: Check, case: Case) -> Finding:
+        function = self._meant(check, case)
         case = replace(case, function=function.name)
         given = texts.given(self.exercise.arguments.get(function.name, ()), case.args)
         got, trouble = diagnose.REFUSED, None
@@ -137,12 +161,33 @@ class _Trial:
         except Trouble as error:
             trouble = error
         if case.raises:
+            self._to_refuse.setdefault(check, set()).add(function.name)
             return _refusal(case, given, got, trouble)
-        want = function.wanted(*case.args)
+        want = self._wanted(check, case, function)
         self.seen.append(diagnose.Seen(case, want, got))
         if trouble is not None:
             return Finding(case.says, False, given, trouble=_told(trouble))
         return _judged(case.says, given, got, want, function.apart, function.tolerance)
+
+    def _meant(self, check: Check, case: Case) -> Function:
+        try:
+            return self.exercise.function(case.function)
+        except KeyError:
+            known = ", ".join(function.name for function in self.exercise.functions)
+            raise ExerciseError(
+                f"exercise {self.exercise.name}, check {check.title!r}: {case.says!r} is for "
+                f"{case.function!r}, and there are {known}. Name one of these"
+            ) from None
+
+    def _wanted(self, check: Check, case: Case, function: Function) -> Value:
+        try:
+            with np.errstate(all="ignore"):
+                return function.wanted(*case.args)
+        except Exception as error:
+            raise ExerciseError(
+                f"exercise {self.exercise.name}, check {check.title!r}: what {function.name} is judged by "
+                f"fails for {case.says!r}: {type(error).__name__}: {_line(error)}. Correct one of them"
+            ) from error
 
     def _law(self, check: Check, rng: np.random.Generator) -> tuple[list[Finding], str]:
         findings: list[Finding] = []
@@ -160,21 +205,30 @@ class _Trial:
     def picture(self) -> tuple[Outcome, Shown]:
         """Draw the plate with the student's functions, and compare."""
         from lietool.exercise import picture
+        from lietool.render.context import NoRendererError
 
         wanted = self.exercise.picture
         # Before the student is asked: a plate without a golden is nobody's fault but ours.
         reference = picture.golden(wanted.plate).image
         passes, trouble = False, ""
-        shown = Shown(wanted.plate, None, reference, "")
+        shown, before = Shown(wanted.plate, None, reference, ""), self._calls
         try:
             with np.errstate(all="ignore"):
                 functions = wanted.functions(Functions(self.exercise, self, finite=True))
                 image = picture.drawn(wanted.plate, functions)
+        except (ExerciseError, NoRendererError):
+            # The student is not to blame.
+            raise
         except (Trouble, compare.UnlikeError) as error:
             trouble = _told(error)
         except Exception as error:
             trouble = f"the figure cannot be drawn with what your function returns: {_line(error)}"
         else:
+            if self._calls == before:
+                raise ExerciseError(
+                    f"exercise {self.exercise.name}: plate {wanted.plate} is drawn without what is to be "
+                    "written, and anybody would have its points. Pass them to the figure"
+                )
             passes, shown = picture.compared(wanted.plate, image)
         shown = replace(shown, says=trouble or shown.says)
         finding = Finding(

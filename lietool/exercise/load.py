@@ -5,6 +5,7 @@ import importlib
 import importlib.util
 import re
 import sys
+import tokenize
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -12,11 +13,13 @@ from types import ModuleType
 
 from lietool import figure as figures
 from lietool import paths
+from lietool.exercise import definitions
 from lietool.exercise.record import Exercise, ExerciseError
 
 HEADER = "# lietool exercise: "
 """What the first line of every starter begins with; the name follows."""
 _HEADER = re.compile(r"^#\s*lietool exercise:\s*([\w-]+)\s*$", re.MULTILINE)
+_IMPORT = re.compile(r"(?:import|from)\s")
 # A header is looked for in this much of a file.
 _TOP = 4000
 _OWN = "lietool_project.exercises"
@@ -131,7 +134,8 @@ def _module(file: Path) -> ModuleType:
 
 def _completed(exercise: Exercise, name: str, file: Path) -> Exercise:
     tree = _tree(file)
-    text = file.read_text(encoding="utf-8")
+    with tokenize.open(file) as opened:
+        text = opened.read()
     written = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
     for function in exercise.functions:
         if function.name not in written:
@@ -142,12 +146,17 @@ def _completed(exercise: Exercise, name: str, file: Path) -> Exercise:
             raise ExerciseError(
                 f"{file}: {function.name} has no docstring, which says what to write. Write one"
             )
+        if written[function.name].decorator_list:
+            # It would stand outside of what a student begins with.
+            raise ExerciseError(
+                f"{file}: {function.name} is decorated, which no starter is. Write it plainly"
+            )
     title = f"{exercise.title} ({', '.join(exercise.equations)})"
     head = f"{HEADER}{name}\n# {title}: `lietool exercise show {name}`\n\n"
     wanted = [function.name for function in exercise.functions]
     imports = "".join(_imports(tree))
     starters = [_started(text, written[f.name], f.starter) for f in exercise.functions]
-    parts = [_piece(text, node) for node in _needed(tree, wanted)]
+    parts = [part for part in definitions.statements([text], wanted) if not _IMPORT.match(part)]
     return replace(
         exercise,
         name=name,
@@ -167,31 +176,6 @@ def _imports(tree: ast.Module) -> Iterator[str]:
                 yield ast.unparse(node) + "\n"
 
 
-def _needed(tree: ast.Module, wanted: Sequence[str]) -> list[ast.stmt]:
-    """The functions that are to be written and what they use of the file, in its order."""
-    made: dict[str, ast.stmt] = {}
-    for node in tree.body:
-        if isinstance(node, ast.FunctionDef):
-            made[node.name] = node
-        elif isinstance(node, ast.Assign | ast.AnnAssign):
-            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-            made |= {
-                name.id: node for target in targets for name in ast.walk(target) if isinstance(name, ast.Name)
-            }
-    todo, seen = list(wanted), set()
-    while todo:
-        name = todo.pop()
-        if name in made and name not in seen:
-            seen.add(name)
-            todo += [x.id for x in ast.walk(made[name]) if isinstance(x, ast.Name)]
-    kept = {id(made[name]) for name in seen}
-    return [node for node in tree.body if id(node) in kept]
-
-
-def _piece(text: str, node: ast.stmt) -> str:
-    return ast.get_source_segment(text, node) or ""
-
-
 def _started(text: str, node: ast.FunctionDef, body: str) -> str:
     """A function as far as the end of its docstring, and the starter's body."""
     lines = text.splitlines()
@@ -203,8 +187,10 @@ def _started(text: str, node: ast.FunctionDef, body: str) -> str:
 def _check(exercise: Exercise, file: Path) -> None:
     if not exercise.statement:
         raise ExerciseError(f"{file}: it has no docstring, which is the statement. Write one")
+    if not exercise.functions:
+        raise ExerciseError(f"{file}: it has no function that is to be written. Name one in functions=")
     points = [check.points for check in exercise.checks] + [exercise.picture.points]
-    if not exercise.checks or any(point != int(point) or point <= 0 for point in points):
+    if not exercise.checks or not all(isinstance(point, int) and point > 0 for point in points):
         raise ExerciseError(
             f"{file}: checks and picture must have whole points, at least 1; got {points}. Correct them"
         )

@@ -60,12 +60,23 @@ def drawn(plate: str, functions: Mapping[str, Callable[..., Any]]) -> np.ndarray
 
     Raises
     ------
+    ExerciseError
+        If the figure takes no function of such a name.
+    NoRendererError
+        If nothing on this machine can render.
     Exception
         What the figure raises where it cannot show what the functions return.
     """
     from lietool.render import draw, labels
 
     figure = figures.load(_command(plate))
+    for name in functions:
+        if name not in figure.functions:
+            known = ", ".join(figure.functions) or "none"
+            raise ExerciseError(
+                f"plate {plate}: {figure.name} takes no function {name!r}; it takes {known}. "
+                "Correct the picture of the exercise"
+            )
     drawing = figure.draw_with(functions, **figure.plate_params(plate))
     rendered = draw.render(drawing.picture, store=labels.Store((_place(plate).labels,)))
     return rendered.image

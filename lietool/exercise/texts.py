@@ -73,7 +73,8 @@ def beside(got: Any, want: Any) -> tuple[str, str]:
     if b.size <= _MOST:
         return _told(a, b)
     with np.errstate(invalid="ignore", over="ignore"):
-        off = np.where(a == b, 0.0, np.abs(a.astype(b.dtype) - b) if a.dtype.kind != "c" else np.abs(a - b))
+        # As floats: of truth values there is no difference, and of unsigned integers a wrong one.
+        off = np.where(a == b, 0.0, np.abs(a.astype(np.result_type(a, float)) - b))
     worst = np.unravel_index(int(np.argmax(np.where(np.isnan(off), np.inf, off))), b.shape)
     # The axes that belong together, of a matrix or a vector, are shown whole where there are few.
     keep = next((k for k in range(b.ndim) if np.prod(b.shape[k:], dtype=int) <= _MOST), b.ndim)

@@ -52,6 +52,24 @@ def test_a_vector_may_have_either_sign_each_by_itself():
     assert compare.up_to_sign(-v + [[0.0, 0.25], [0.0, 0.0]], v) == 0.25
 
 
+def test_vectors_of_either_sign_that_are_no_numbers_are_the_same_or_far():
+    v, blank = np.eye(2), np.full((2, 2), np.nan)
+    assert compare.up_to_sign(blank, blank) == 0.0
+    assert not compare.up_to_sign(blank, v) <= 1.0
+    assert not compare.up_to_sign(np.where(v == 1.0, np.inf, v), v) <= 1.0
+
+
+@pytest.mark.parametrize("got", [[1, 2], np.array([1, 2], np.uint8), np.array([1, 2], np.float32)])
+def test_a_result_is_passed_on_in_double_precision(got):
+    made = compare.doubles(got, np.zeros(2))
+    assert made.dtype == np.float64 and made.tolist() == [1.0, 2.0]
+    assert compare.doubles(got, np.zeros(2, complex)).dtype == np.complex128
+    one, two = compare.doubles((got, True), (np.zeros(2), 0.0))
+    assert one.dtype == two.dtype == np.float64
+    with pytest.raises(compare.UnlikeError):
+        compare.doubles(got, np.zeros(3))
+
+
 def test_values_are_told_in_one_line():
     assert texts.value(np.pi) == "3.141592654"
     assert texts.value(np.eye(2)) == "[[1, 0], [0, 1]]"
@@ -73,6 +91,15 @@ def test_of_a_batch_the_worst_entry_is_told():
     assert texts.beside(got, want)[1].startswith("[11] [[nan")
     wanted, came = texts.beside((1.0, got), (2.0, want))
     assert wanted.startswith("2; [11]") and came.startswith("1; [11]")
+
+
+def test_of_a_batch_of_truth_values_or_unsigned_integers_too():
+    want = np.ones(20, bool)
+    assert texts.beside(np.arange(20) != 3, want) == ("[3] True", "[3] False")
+    got = np.full(20, 7, np.uint8)
+    got[5] = 9
+    assert texts.beside(got, np.full(20, 8, np.uint8))[0].startswith("[0]")
+    assert texts.beside(np.arange(20, dtype=np.uint8), np.full(20, 1, np.uint8))[1].startswith("[19]")
 
 
 def test_what_differs_little_is_told_with_more_digits():

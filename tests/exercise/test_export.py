@@ -1,5 +1,6 @@
 """Exercises as an assignment: the folder that is written, and what students and scripts find in it."""
 
+import dataclasses
 import os
 import subprocess
 import sys
@@ -165,6 +166,12 @@ class TestAssignment:
         text = export.statement(load.load("rodrigues"))
         assert text.startswith("# 1. The rotation about an axis (2.14, 2.15, 2.16)\n\nA rotation of space")
         assert "| ordinary angles | 3 |\n" in text and "(B2.5.png)" in text
+
+    def test_a_bar_in_a_title_ends_no_cell(self):
+        exercise = load.load("rodrigues")
+        check = dataclasses.replace(exercise.checks[0], title="|q| = 1")
+        text = export.statement(dataclasses.replace(exercise, checks=(check,)))
+        assert "| \\|q\\| = 1 | 3 |\n" in text
 
 
 class TestPlain:

@@ -1,6 +1,7 @@
 """A course for nbgrader: notebooks as it wants them, whose cells grade what is written in them."""
 
 import csv
+import dataclasses
 import json
 import os
 import re
@@ -103,6 +104,17 @@ class TestNotebook:
         exec(exercise.solution_source, plain)
         written = [x for x, value in plain.items() if callable(value) and hasattr(value, "__code__")]
         assert [source[x].__code__.co_code for x in written] == [plain[x].__code__.co_code for x in written]
+
+
+def test_what_decorates_a_helper_comes_along():
+    exercise = load.load("rodrigues")
+    helper = "@staticmethod\ndef _helper():\n    return 1\n"
+    made = export_nbgrader.solution(
+        dataclasses.replace(exercise, solution_source=exercise.solution_source + helper)
+    )
+    space: dict = {}
+    exec(made, space)
+    assert isinstance(space["_helper"], staticmethod)
 
 
 class TestCells:

@@ -12,6 +12,7 @@ from lietool.exercise import (
     Check,
     Claim,
     Exercise,
+    ExerciseError,
     Function,
     Mistake,
     Picture,
@@ -21,6 +22,7 @@ from lietool.exercise import (
 )
 from lietool.exercise.outcome import Shown
 from lietool.exercise.student import Trouble
+from lietool.render.context import NoRendererError
 
 
 def right(x, y):
@@ -141,6 +143,71 @@ def test_bad_input_must_be_a_value_error():
     assert judged(lambda x, y: np.asarray(x) + 2.0 * y).outcomes[2].findings[0].got == "nan"
 
 
+def test_who_refuses_whatever_comes_earns_nothing_by_it():
+    def refuses(x, y):
+        raise ValueError("no")
+
+    made = judged(refuses)
+    assert points(made) == [0, 0, 0]
+    assert made.outcomes[2].trouble == (
+        "add returned nothing for any input: what is right must not be refused"
+    )
+    assert made.diagnosis == ()
+    # Wherever the check stands.
+    first = replace(EXERCISE, checks=EXERCISE.checks[::-1])
+    assert points(grade.judge(first, Inline(add=right), picture=False)) == [1, 2, 4]
+    assert points(grade.judge(first, Inline(add=refuses), picture=False)) == [0, 0, 0]
+
+
+def test_a_mistake_that_fails_explains_nobody_who_fails():
+    broken = Mistake("broken", "It divides.", {"add": lambda x, y: 1 // 0})
+    made = grade.judge(replace(EXERCISE, mistakes=(broken,)), Inline(add=lambda x, y: {}["a"]), picture=False)
+    assert made.marks == 0 and made.diagnosis == ()
+
+
+def test_a_law_has_integers_as_the_numbers_that_they_are():
+    def law(f, rng):
+        yield Claim("f(1, 1)^-1 = 1 / 3", f.add(1, 1) ** -1, 1.0 / 3.0)
+        x = f.add(np.arange(2), 0)
+        x += 0.5
+        yield Claim("f(x, 0) = x", x, np.arange(2) + 0.5)
+
+    exercise = replace(EXERCISE, checks=(Check("law", 1, law=law),))
+    whole = Inline(add=lambda x, y: np.asarray(x + 2 * y))
+    made = grade.judge(exercise, whole, picture=False)
+    assert made.marks == 1, made.as_json()
+
+
+@pytest.mark.parametrize(
+    ("check", "message"),
+    [
+        (Check("none", 1, cases=lambda rng: ()), "check 'none' calls no function"),
+        (Check("none", 1, law=lambda f, rng: ()), "check 'none' calls no function"),
+        (Check("ours", 1, law=lambda f, rng: [Claim("1 = 1", 1.0, 1.0)]), "check 'ours' calls no function"),
+        (
+            Check("other", 1, cases=lambda rng: [Case("one", (1.0,), "subtract")]),
+            "check 'other': 'one' is for 'subtract', and there are add. Name one of these",
+        ),
+        (
+            Check("few", 1, cases=lambda rng: [Case("one", (1.0,))]),
+            "check 'few': what add is judged by fails for 'one': TypeError: right() missing",
+        ),
+    ],
+)
+def test_a_check_that_cannot_be_judged_is_the_teachers(check, message):
+    with pytest.raises(ExerciseError) as error:
+        grade.judge(replace(EXERCISE, checks=(check,)), Inline(add=lambda *args: 1.0), picture=False)
+    assert message in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_law_that_says_nothing_of_what_comes_has_no_points():
+    law = Check("law", 1, law=lambda f, rng: [Claim("x > 0", x, x) for x in [f.add(0.0, 1.0)] if x < 0.0])
+    made = grade.judge(replace(EXERCISE, checks=(law,)), Inline(add=right), picture=False)
+    assert made.marks == 0 and made.outcomes[0].trouble == (
+        "it has nothing to say of what your function returns"
+    )
+
+
 def test_what_is_random_goes_by_the_seed():
     seen = []
     for seed in (0, 0, 1):
@@ -165,6 +232,19 @@ def test_nothing_but_nan_is_a_starter():
     assert made.diagnosis == (
         "It returns nan only, as the file does that you started with: write the function.",
     )
+
+
+def test_of_several_functions_those_left_blank_are_named_and_mistakes_of_the_others_told():
+    other = replace(EXERCISE.functions[0], name="other")
+    cases = [Case("some", (float(k), 1.0), name) for name in ("add", "other") for k in range(3)]
+    checks = (Check("values", 1, cases=lambda rng: cases),)
+    exercise = replace(EXERCISE, functions=(EXERCISE.functions[0], other), checks=checks)
+    blank = {"other": lambda x, y: np.nan}
+    left = "other gave nan only, as the file does that you started with: write what is left."
+    made = grade.judge(exercise, Inline(add=right, **blank), picture=False)
+    assert made.diagnosis == (left,)
+    made = grade.judge(exercise, Inline(add=lambda x, y: x + y, **blank), picture=False)
+    assert made.diagnosis == ("This is x + y.", left)
 
 
 def test_a_mistake_must_agree_everywhere_and_differ_somewhere():
@@ -217,6 +297,27 @@ def test_the_picture_has_points(plate):
     made = judged(lambda x, y: np.asarray(x) + y, picture=True)
     assert made.outcomes[-1].points == 0 and made.outcomes[-1].findings[0].off == "it is another"
     assert made.shown.student[0, 0, 0] == 30
+
+
+def test_a_plate_without_the_students_function_is_the_teachers(plate, monkeypatch):
+    monkeypatch.setattr(picture, "drawn", lambda plate, functions: picture.golden(plate).image)
+    with pytest.raises(ExerciseError, match="plate T1 is drawn without what is to be written"):
+        judged(right, picture=True)
+
+
+def test_a_function_that_the_plate_does_not_take_is_the_teachers():
+    exercise = replace(EXERCISE, picture=Picture("B2.8", 3, lambda f: {"ad": f.add}))
+    with pytest.raises(ExerciseError, match=r"plate B2\.8: slerp takes no function 'ad'; it takes "):
+        grade.judge(exercise, Inline(add=right))
+
+
+def test_nobody_loses_points_where_nothing_can_be_drawn(plate, monkeypatch):
+    def fails(plate, functions):
+        raise NoRendererError({})
+
+    monkeypatch.setattr(picture, "drawn", fails)
+    with pytest.raises(NoRendererError):
+        judged(right, picture=True)
 
 
 @pytest.mark.parametrize(

@@ -104,15 +104,38 @@ def test_the_solution_has_what_it_needs_of_the_file_and_nothing_else(project):
     assert space["twice"](np.array([4.0])) == 8.0
 
 
+def test_the_solution_has_what_decorates_or_changes_what_it_needs(project):
+    project(
+        TWICE.replace("def _times", "@np.vectorize\ndef _times")
+        .replace("FACTOR: float = 2.0", "FACTOR = np.ones(2)\nFACTOR[1] = 2.0")
+        .replace("FACTOR)", "FACTOR[1])")
+        .replace("UNUSED = 5.0", "class Unused:\n    pass")
+    )
+    space = {}
+    exec(load.load("twice-it").solution_source, space)
+    assert space["twice"](np.array([4.0])) == 8.0 and isinstance(space["_times"], np.vectorize)
+    assert "Unused" not in space
+
+
+def test_a_file_may_say_its_encoding(project):
+    file = project()
+    file.write_bytes(f"# coding: latin-1\n{TWICE}".replace("twice x.", "twice \xe4.").encode("latin-1"))
+    assert "twice \xe4." in load.load("twice-it").starter_source
+
+
 @pytest.mark.parametrize(
     ("before", "after", "message"),
     [
         ("EXERCISE = Exercise(\n    number=7", "EXERCISE = Exercise(\n    number=N", "must say its number"),
+        ("functions=(Function", "functions=() and (Function", "it has no function that is to be written"),
         ("def twice(x)", "def thrice(x)", "no function twice, which is to be written"),
         ('    """Return twice x.', '    x = """Return twice x.', "twice has no docstring"),
         ("reference=lambda x: 2.0 * np.asarray(x), ", "", "twice has nothing to be judged by"),
         ('Check("numbers", 2, cases=_numbers)', 'Check("numbers", 2)', "must have cases or a law"),
         ('Check("numbers", 2', 'Check("numbers", 0', "must have whole points, at least 1; got [0, 1, 1]"),
+        ('Check("numbers", 2', 'Check("numbers", np.nan', "whole points, at least 1; got [nan, 1, 1]"),
+        ('Check("numbers", 2', 'Check("numbers", None', "whole points, at least 1; got [None, 1, 1]"),
+        ("def twice(x)", "@np.vectorize\ndef twice(x)", "twice is decorated, which no starter is"),
         ('{"twice": lambda x: 3.0', '{"once": lambda x: 3.0', "mistake 'thrice' must be of twice"),
         ("import numpy as np", "import numpy as np; 1 / 0", "ZeroDivisionError: division by zero"),
         ("import numpy as np", "import numpy as", "line 7: "),
