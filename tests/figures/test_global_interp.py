@@ -410,7 +410,9 @@ class TestOtherForms:
     }
     SIMILARITY: ClassVar = {"similarity": lambda *given: forms.similarity(*given)}
 
-    @pytest.mark.parametrize(("plate_id", "given"), [("B6.4", FROBENIUS), ("B6.7", SIMILARITY)], ids=["B6.4", "B6.7"])
+    @pytest.mark.parametrize(
+        ("plate_id", "given"), [("B6.4", FROBENIUS), ("B6.7", SIMILARITY)], ids=["B6.4", "B6.7"]
+    )
     def test_right_ones_find_the_shape_of_the_library(self, plate_id, given, plate):
         found = GLOBAL.draw_with(given, **GLOBAL.plate_params(plate_id)).numbers
         wanted = plate(plate_id).numbers
