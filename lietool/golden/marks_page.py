@@ -97,11 +97,41 @@ def of_class(
     return _render("marks_class.html", _ALONE, title=title, summary=summary, groups=groups, notes=notes)
 
 
+def rows(text: str) -> list[str]:
+    """Return lines in which the rows of each matrix stand below each other.
+
+    Parameters
+    ----------
+    text : str
+        Values, as findings tell them: "a = [[1, 2], [3, 4]], b = [[5, 6], [7, 8]], t = 0.5".
+
+    Returns
+    -------
+    list of str
+        What follows a matrix begins a line of its own.
+    """
+    lines, line, depth, opened, matrix = [], "", 0, 0, False
+    for char in text:
+        if char == " " and line.endswith(("],", "];")) and (depth or matrix):
+            lines.append(line)
+            line = " " * (opened + depth) if depth else ""
+            matrix = bool(depth)
+            continue
+        line += char
+        if char == "[":
+            opened = opened if depth else len(line) - 1
+            depth += 1
+            matrix = matrix or depth > 1
+        depth -= char == "]"
+    return [*lines, line]
+
+
 def _sentence(about: Mapping[str, Any], drawn: bool) -> str:
     """What the picture comes to, as a sentence."""
     says = about["picture"]["says"] if about["picture"] else ""
     passed = bool(about["checks"]) and about["checks"][-1]["passed"]
-    return _SAME if drawn and passed else f"{says[:1].upper()}{says[1:]}."
+    # Not with a capital: it may begin with the name of a function.
+    return _SAME if drawn and passed else f"{says}."
 
 
 def _render(template: str, scripts: Sequence[str], **values: Any) -> str:
@@ -115,7 +145,7 @@ def _render(template: str, scripts: Sequence[str], **values: Any) -> str:
 @functools.cache
 def _environment() -> Any:
     made = report_page.environment()
-    made.filters["rows"] = lambda text: text.replace("], [", "],\n [")
+    made.filters["rows"] = lambda text: "\n".join(rows(text))
     made.filters["counted"] = _counted
     return made
 

@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from lietool.exercise import Exercise
+from lietool.golden import marks_page
 from lietool.verbs import _table
 from lietool.verbs._exercise_class import Marked
 from lietool.verbs._exercise_read import printable
@@ -18,6 +19,8 @@ _MOST = 4
 # Of what is most often wrong.
 _FIRST = 5
 _WIDTH = 100
+# Lines of what a submission has printed.
+_PRINTED = 8
 _PARTS = (("given", "given"), ("wanted", "wanted"), ("got", "got"), ("off", "off by"), ("trouble", "but"))
 
 
@@ -107,8 +110,11 @@ def one(about: Mapping[str, Any], picture: str) -> None:
             click.echo("\n" + "\n".join(_lines(check)))
     if about["printed"]:
         click.echo("\nWhat it printed:")
-        for line in about["printed"].splitlines()[:8]:
+        printed = about["printed"].splitlines()
+        for line in printed[:_PRINTED]:
             click.echo(f"  {printable(line)[:_WIDTH]}")
+        if len(printed) > _PRINTED:
+            click.echo(f"  and {len(printed) - _PRINTED} lines more")
     if about["diagnosis"]:
         click.echo("\n" + click.style("What it looks like:", bold=True))
         for says in about["diagnosis"]:
@@ -127,7 +133,8 @@ def summary(found: Sequence[Row]) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``submissions``, ``ungraded`` (what is for no exercise), ``full``, ``mean`` (a share of all marks),
+        ``submissions``, ``ungraded`` (of which nobody knows what they are for), ``full``, ``mean`` (a share
+        of the marks of all others),
         ``wrong`` and ``said``, pairs of a text and how often, the most frequent first.
     """
     known = [row for row in found if row.of]
@@ -150,9 +157,11 @@ def summary(found: Sequence[Row]) -> dict[str, Any]:
 def sentences(about: Mapping[str, Any]) -> list[str]:
     """Say a summary in sentences."""
     count, full = about["submissions"], about["full"]
-    lines = [f"{count} submissions: {about['mean']:.0%} of the points on average, {full} with all of them."]
-    if about["ungraded"]:
-        lines.append(f"{about['ungraded']} could not be graded: nobody knows what they are for.")
+    none = about["ungraded"]
+    graded = f"{count - none} of {count} submissions" if none else f"{count} submissions"
+    lines = [f"{graded}: {about['mean']:.0%} of the points on average, {full} with all of them."]
+    if none:
+        lines.append(f"{none} could not be graded, and the reason stands beside each.")
     if about["wrong"]:
         lines.append("Most often wrong: " + ", ".join(f"{what} ({n})" for what, n in about["wrong"]) + ".")
     for what, n in about["said"]:
@@ -218,15 +227,14 @@ def _wrapped(called: str, text: str, indent: int = 4) -> list[str]:
     """Lines of a value, each row of a matrix in one of its own."""
     head, rest = f"{'':{indent}}{called:<8}", " " * (indent + 8)
     lines = []
-    # The rows stand below each other.
-    under = " " * (text.find("[[") + 1)
-    for row in text.replace("], [", "],\n[").split("\n"):
+    for row in marks_page.rows(text):
+        under = rest + " " * (len(row) - len(row.lstrip()))
         lines += textwrap.wrap(
-            row,
+            row.lstrip(),
             _WIDTH,
-            initial_indent=rest + under if lines else head,
+            initial_indent=under if lines else head,
             # Within brackets that are still open.
-            subsequent_indent=f"{rest}  ",
+            subsequent_indent=f"{under}  ",
             break_long_words=False,
             break_on_hyphens=False,
         )

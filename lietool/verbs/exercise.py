@@ -96,7 +96,8 @@ def start(name: str, folder: Path) -> None:
 
 
 @command.command()
-@click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path(path_type=Path))
+# One that cannot be read is its owner's trouble, not that of the class.
+@click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path(path_type=Path, readable=False))
 @click.option(
     "--exercise", "name", metavar="NAME", help="What the files are for; else their first lines say."
 )

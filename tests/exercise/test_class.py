@@ -1,6 +1,7 @@
 """A class: submissions in processes that may hang or die, marks as a table, and going on after a kill."""
 
 import csv
+import errno
 import json
 import os
 import signal
@@ -208,3 +209,31 @@ def test_after_a_kill_it_goes_on_where_it_was(submit, exercise, tmp_path, monkey
     after = {path: path.stat().st_mtime_ns for path in kept.rglob("exercises/*/*.json")}
     assert len(after) == len(names) and before.items() <= after.items()
     assert [row["file"] for row in table()] == names
+
+
+def test_one_that_may_not_be_read_does_not_stop_the_class(hand_in, exercise, monkeypatch) -> None:
+    # Root may read all: what stands before the reading asks so, and the reading finds out.
+    monkeypatch.setattr(os, "access", lambda path, mode, **_: not str(path).endswith("half.py"))
+    read = Path.open
+
+    def refusing(self, *args, **options):
+        if self.name == "half.py":
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self))
+        return read(self, *args, **options)
+
+    monkeypatch.setattr(Path, "open", refusing)
+    said = exercise("check", *hand_in, "--csv", "grades.csv", code=5).stdout
+    assert {Path(row["file"]).stem: row["diagnosis"] for row in table()}["half"] == (
+        "it cannot be read: Permission denied"
+    )
+    assert "5 submissions" in said
+
+
+def test_what_could_not_be_graded_is_no_part_of_the_average() -> None:
+    rows = [
+        _exercise_tell.Row("a.py", "one", 10, 10, {}, "", ""),
+        _exercise_tell.Row("b.py", "", 0, 0, {}, "it is too large", ""),
+    ]
+    said = _exercise_tell.sentences(_exercise_tell.summary(rows))
+    assert said[0] == "1 of 2 submissions: 100% of the points on average, 1 with all of them."
+    assert said[1] == "1 could not be graded, and the reason stands beside each."

@@ -177,3 +177,9 @@ def test_light_and_dark_are_chosen(report: str, browser: Browser) -> None:
         assert browser.js("return document.documentElement.dataset.theme") == "dark"
         browser.js("$('#_theme').click()")
     assert not browser.complaints()
+
+
+def test_the_name_of_a_function_keeps_its_case() -> None:
+    check = {"passed": False}
+    about = {"picture": {"plate": "R1", "says": "root was not tried again"}, "checks": [check]}
+    assert marks_page._sentence(about, drawn=False) == "root was not tried again."
