@@ -51,7 +51,7 @@ def names(within: Sequence[Path] | None = None) -> dict[str, Path]:
     found: dict[str, tuple[int, Path]] = {}
     for folder in folders() if within is None else within:
         for file in sorted(folder.glob("*.py")):
-            if file.name.startswith("_"):
+            if file.name.startswith("_") or file.is_dir():
                 continue
             name = file.stem.replace("_", "-")
             if name in found:

@@ -8,7 +8,7 @@ import numpy as np
 
 from lietool import figure as figures
 from lietool.exercise.outcome import Shown
-from lietool.exercise.record import ExerciseError
+from lietool.exercise.record import ExerciseError, NoGoldenError
 from lietool.golden import compare, store
 from lietool.golden.place import Place
 
@@ -24,23 +24,31 @@ def golden(plate: str) -> store.Golden:
     Raises
     ------
     ExerciseError
-        If there is no such plate, or it has no golden.
+        If there is no such plate.
+    NoGoldenError
+        If it has no golden that can be read.
     """
     try:
         return store.read(_place(plate))
-    except (store.GoldenError, figures.FigureError) as error:
+    except figures.FigureError as error:
         raise ExerciseError(f"plate {plate}: {error}") from None
+    except store.GoldenError as error:
+        raise _no_golden(plate, str(error)) from None
 
 
 def file(plate: str) -> Path:
-    """Return the file with the accepted picture of a plate; raises ExerciseError as `golden` does."""
+    """Return the file with the accepted picture of a plate; raises as `golden` does."""
     try:
         path = _place(plate).png
     except figures.FigureError as error:
         raise ExerciseError(f"plate {plate}: {error}") from None
     if not path.is_file():
-        raise ExerciseError(f"plate {plate}: there is no golden at {path}")
+        raise _no_golden(plate, f"there is no golden at {path}")
     return path
+
+
+def _no_golden(plate: str, why: str) -> NoGoldenError:
+    return NoGoldenError(f'plate {plate}: {why}. Make it: `lietool figures accept {plate} --reason "..."`')
 
 
 def drawn(plate: str, functions: Mapping[str, Callable[..., Any]]) -> np.ndarray:

@@ -17,6 +17,10 @@ class ExerciseError(ValueError):
     """An exercise that cannot be used; the message is one line, names the file and says what to do."""
 
 
+class NoGoldenError(ExerciseError):
+    """An exercise whose plate has no picture to compare with."""
+
+
 @dataclass(frozen=True, eq=False)
 class Function:
     """A function that a student writes.

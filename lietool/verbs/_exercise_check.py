@@ -1,7 +1,8 @@
 """`lietool exercise check`: from files to marks: in a terminal, as JSON, tables, pages, pictures."""
 
 import json
-from collections.abc import Mapping, Sequence
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,10 +11,12 @@ import click
 
 from lietool import atomic
 from lietool.exercise import Exercise, load
+from lietool.exercise.record import NoGoldenError
 from lietool.verbs import _exercise_class, _exercise_csv, _exercise_read, _exercise_tell, _studio
 from lietool.verbs._exercise_class import Marked
 
 _WRONG = 5
+_NO_GOLDEN = 3
 
 
 @dataclass(frozen=True)
@@ -47,7 +50,8 @@ def run(paths: Sequence[Path], wanted: Wanted) -> int:
     Raises
     ------
     Stop
-        With 2 if the only file cannot be read, or a result cannot be written.
+        With 2 if the only file cannot be read, or a result cannot be written, and 3 if the plate of an
+        exercise has no golden.
     ExerciseError
         If there is no such exercise, or it is broken.
     """
@@ -58,6 +62,8 @@ def run(paths: Sequence[Path], wanted: Wanted) -> int:
     names = dict.fromkeys(each.exercise for each in submissions if each.exercise)
     exercises = {name: load.load(name) for name in load.names() if name in names}
     note = _studio.current().trouble
+    if not note:
+        _goldens(exercises.values())
     if len(submissions) == 1:
         marked = [_exercise_class.alone(submissions[0], wanted.seed, not note)]
     else:
@@ -71,27 +77,47 @@ def run(paths: Sequence[Path], wanted: Wanted) -> int:
         )
     rows = _exercise_tell.rows(marked, exercises, not note)
     code = 0 if all(row.full for row in rows) else _WRONG
-    saved = _saved(marked, wanted)
+    saved, lost = _saved(marked, wanted)
     _files(marked, rows, exercises, wanted, note)
     if wanted.as_json:
         click.echo(json.dumps(_told(marked, rows, code, note), indent=2, ensure_ascii=False))
     else:
         _print(marked, rows, saved, note, wanted)
+    if lost:
+        click.echo(lost, err=True)
     return code
 
 
 def _prepare(wanted: Wanted) -> None:
     """Find out before minutes of grading what cannot be written after them."""
     for path in (wanted.csv, wanted.report and wanted.report / "index.html"):
-        if path is None:
-            continue
-        with _studio.writing(str(path)):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            atomic.target(path)
+        if path is not None:
+            with _studio.writing(str(path)):
+                _try_folder(atomic.target(path)[0].parent)
+    if wanted.pictures is not None:
+        with _studio.writing(str(wanted.pictures)):
+            _try_folder(wanted.pictures)
 
 
-def _saved(marked: Sequence[Marked], wanted: Wanted) -> dict[str, Path]:
-    """Save pictures, and return the file of each submission."""
+def _goldens(exercises: Iterable[Exercise]) -> None:
+    from lietool.exercise import picture
+
+    for exercise in exercises:
+        try:
+            picture.golden(exercise.picture.plate)
+        except NoGoldenError as error:
+            raise _studio.Stop(_NO_GOLDEN, str(error)) from None
+
+
+def _try_folder(folder: Path) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    # Only a file shows whether there can be one: the mode of a folder says nothing of a read-only disk.
+    with tempfile.TemporaryFile(dir=folder):
+        pass
+
+
+def _saved(marked: Sequence[Marked], wanted: Wanted) -> tuple[dict[str, Path], str]:
+    """Save pictures; return the file of each submission, and why there is none where nobody has named one."""
     saved: dict[str, Path] = {}
     for each, stem in zip(marked, stems([each.submission.path for each in marked]), strict=True):
         data = _drawn(each)
@@ -100,10 +126,16 @@ def _saved(marked: Sequence[Marked], wanted: Wanted) -> dict[str, Path]:
         assert each.record is not None
         folder = wanted.pictures or each.submission.path.parent
         path = folder / f"{stem}-{each.record.about['picture']['plate']}.png"
-        with _studio.writing(str(path)):
-            atomic.write_bytes(path, data)
+        try:
+            with _studio.writing(str(path)):
+                atomic.write_bytes(path, data)
+        except _studio.Stop as stop:
+            # A folder of submissions may be read-only: that must not cost the marks.
+            if wanted.pictures is not None:
+                raise
+            return {}, f"{stop.message}. Name a folder: -o DIR"
         saved[each.submission.file] = path
-    return saved
+    return saved, ""
 
 
 def stems(paths: Sequence[Path]) -> list[str]:

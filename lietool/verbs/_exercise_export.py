@@ -8,6 +8,7 @@ import click
 from lietool.verbs import _studio
 
 _SYSTEMS = ("gradescope", "nbgrader", "plain")
+_NO_GOLDEN = 3
 # What comes next.
 _NEXT = {
     "gradescope": "Upload autograder.zip to a programming assignment of {total} points; hand out students/.",
@@ -45,13 +46,17 @@ def command(names: tuple[str, ...], to: tuple[str, Path], seed: int) -> None:
     you have tried.  DIR/README.md says what to do with it.
     """
     from lietool.exercise import export, export_wheel
+    from lietool.exercise.record import NoGoldenError
 
     system, folder = to
     writer = importlib.import_module(f"lietool.exercise.export_{system}")
     if strange := export.stranger(folder):
         raise _studio.Stop(2, f"{folder} cannot take an assignment: {strange}. Name a new folder")
-    assignment = export.gather(names, seed)
-    files = writer.files(assignment, export_wheel.wheel())
+    try:
+        assignment = export.gather(names, seed)
+        files = writer.files(assignment, export_wheel.wheel())
+    except NoGoldenError as error:
+        raise _studio.Stop(_NO_GOLDEN, str(error)) from None
     with _studio.writing(str(folder)):
         export.publish(folder, files)
     exercises = assignment.exercises

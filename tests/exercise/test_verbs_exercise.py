@@ -1,8 +1,10 @@
 """`lietool exercise` for a student: list, show, start, and the verdict on one file."""
 
+import errno
 import json
 import os
 import stat
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +12,8 @@ import pytest
 from PIL import Image
 
 from lietool.exercise import load
-from lietool.verbs import _exercise_tex, _studio
+from lietool.golden import marks_page
+from lietool.verbs import _exercise_tell, _exercise_tex, _studio
 
 
 def pixels(path: Path | str) -> np.ndarray:
@@ -215,3 +218,92 @@ def test_where_pictures_cannot_be_compared_they_have_no_points(submit) -> None:
     done = CliRunner().invoke(command, ["exercise", "check", "right.py"], obj=_Otherwise())
     assert done.exit_code == 0 and "7 of 7" in done.stdout
     assert "Pictures were not compared, and have no points here: the renderer is 'other'" in done.stdout
+
+
+@pytest.fixture
+def read_only(monkeypatch) -> None:
+    """Let no file be made in the folder `kept`, as on a read-only disk: root may write to any other."""
+    make, temporary = tempfile.mkstemp, tempfile.TemporaryFile
+
+    def refusing(made):
+        def make(*args, dir=None, **options):
+            if "kept" in Path(dir or "").parts or Path(dir or "").resolve().name == "kept":
+                raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(dir))
+            return made(*args, dir=dir, **options)
+
+        return make
+
+    Path("kept").mkdir()
+    monkeypatch.setattr(tempfile, "mkstemp", refusing(make))
+    monkeypatch.setattr(tempfile, "TemporaryFile", refusing(temporary))
+
+
+@pytest.mark.parametrize("words", [("--csv", "kept/x.csv"), ("--report", "kept/pages"), ("-o", "kept")])
+def test_a_read_only_folder_is_seen_before_grading(submit, exercise, read_only, monkeypatch, words) -> None:
+    submit("right")
+    monkeypatch.setattr("lietool.verbs._exercise_class.alone", lambda *_: pytest.fail("it was graded"))
+    said = exercise("check", "right.py", *words, code=2).output
+    assert f"{words[1].partition('.')[0]}" in said and "cannot be written: Read-only file system" in said
+
+
+def test_marks_need_no_picture_beside_a_submission_that_is_on_a_read_only_disk(
+    submit, exercise, read_only
+) -> None:
+    submit("right", "kept/right.py")
+    done = exercise("check", "kept/right.py", "--csv", "marks.csv")
+    assert "10 of 10" in done.stdout and "kept/right.py,square-root,10,10" in Path("marks.csv").read_text()
+    assert (
+        done.stderr == "kept/right-R1.png cannot be written: Read-only file system. Name a folder: -o DIR\n"
+    )
+
+
+def test_a_matrix_is_told_row_by_row_beside_others() -> None:
+    text = "p = [[0, 0], [1, 2]], q = [[4, 5], [6, 7]], t = [0.5, 1], 2"
+    assert marks_page.rows(text) == [
+        "p = [[0, 0],",
+        "     [1, 2]],",
+        "q = [[4, 5],",
+        "     [6, 7]],",
+        "t = [0.5, 1], 2",
+    ]
+    assert marks_page.rows("[0] [[1, 2], [3, 4]]; [5, 6], [7, 8]") == [
+        "[0] [[1, 2],",
+        "     [3, 4]];",
+        "[5, 6], [7, 8]",
+    ]
+    assert marks_page.rows("[[[1, 2], [3, 4]], [[5, 6], [7, 8]]]") == [
+        "[[[1, 2],",
+        "  [3, 4]],",
+        " [[5, 6],",
+        "  [7, 8]]]",
+    ]
+    assert _exercise_tell._wrapped("given", text)[1] == " " * 17 + "[1, 2]],"
+
+
+def test_what_was_printed_is_cut_in_the_open(submit, exercise) -> None:
+    submit("    for k in range(20):\n        print(k)\n    return np.sqrt(x)\n", "talks.py")
+    said = exercise("check", "talks.py", code=5).stdout
+    assert "\n  7\n  and " in said and " lines more\n" in said
+
+
+def test_a_plate_without_a_golden_is_told_with_the_way_to_one(submit, exercise, course) -> None:
+    submit("right")
+    golden = course / "golden"
+    golden.rename(course / "away")
+    try:
+        for words in (("check", "right.py"), ("export", "square-root", "--to", "plain", "out")):
+            said = exercise(*words, code=3).output
+            assert "there is no golden at" in said and "lietool figures accept R1 --reason" in said
+            assert said.count("\n") == 1
+    finally:
+        (course / "away").rename(golden)
+    assert not Path("out").exists()
+
+
+def test_a_folder_among_the_exercises_is_none(submit, exercise, course) -> None:
+    folder = course / "exercises" / "old.py"
+    folder.mkdir()
+    try:
+        assert "old" not in exercise("list").stdout
+    finally:
+        folder.rmdir()
