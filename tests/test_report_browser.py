@@ -403,6 +403,8 @@ def test_what_is_marked_is_kept_reviewed_and_downloaded(toy: Browser) -> None:
     assert toy.js("return $('.plate.current .accept input').validationMessage") != ""
     toy.press("it's  a better wave", Keys.ENTER)
     assert toy.js("return $('#_review').innerText") == "Review 1"
+    # The browser keeps it a moment later: what is loaded anew before then may lose it.
+    time.sleep(1.0)
     toy.driver.refresh()
     assert toy.ready() == FAILED and toy.js("return $('#_review').innerText") == "Review 1"
     toy.press("j")
